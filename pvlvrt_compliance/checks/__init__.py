@@ -1,0 +1,1 @@
+"""Checks: a requirement of a profile meets measurements and gives a verdict. Nothing here knows the simulator."""

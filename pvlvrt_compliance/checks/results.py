@@ -1,0 +1,146 @@
+"""The one result object: table, HTML, JUnit, JSON and exit status are all made from it."""
+
+from collections.abc import Iterable
+from enum import StrEnum
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, SerializerFunctionWrapHandler, model_serializer
+
+SCHEMA_VERSION = 1
+
+
+class Status(StrEnum):
+    """Verdicts. The order of definition is worst first."""
+
+    ERROR = "error"
+    NOT_EVALUATED = "not_evaluated"
+    FAIL = "fail"
+    PASS = "pass"
+    NOT_APPLICABLE = "not_applicable"
+
+
+_RANK = {status: rank for rank, status in enumerate(Status)}
+
+
+def worst(statuses: Iterable[Status]) -> Status:
+    """Return the worst verdict; of none at all, `not_applicable`."""
+    return min(statuses, key=_RANK.__getitem__, default=Status.NOT_APPLICABLE)
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Check(_Frozen):
+    """One verdict on one requirement in one test."""
+
+    check: str = Field(description="name of the check, for instance reactive_support")
+    status: Status
+    measured: FiniteFloat | None = None
+    limit: FiniteFloat | None = None
+    margin: FiniteFloat | None = Field(default=None, description="distance to failing, same unit, negative when failed")
+    unit: str = ""
+    at_s: FiniteFloat | None = Field(default=None, description="the worst instant, from the start of the record")
+    clause: str = ""
+    confidence: str = Field(default="", description="the weakest mark of the numbers that the verdict rests on")
+    message: str = ""
+
+
+class WindowMeasurements(_Frozen):
+    """What is measured in one window of a record. None where a quantity cannot be had (no current, no DC channel)."""
+
+    start_s: FiniteFloat
+    end_s: FiniteFloat
+    voltage_positive_pu: FiniteFloat | None = None
+    voltage_negative_pu: FiniteFloat | None = None
+    active_power_kw: FiniteFloat | None = None
+    reactive_power_kvar: FiniteFloat | None = None
+    active_power_2f_kw: FiniteFloat | None = None
+    current_phase_pu: tuple[FiniteFloat, FiniteFloat, FiniteFloat] | None = None
+    current_peak_pu: FiniteFloat | None = None
+    dc_voltage_mean_v: FiniteFloat | None = None
+    dc_voltage_2f_percent: FiniteFloat | None = None
+    current_thd_percent: FiniteFloat | None = None
+    frequency_hz: FiniteFloat | None = None
+
+
+class ControllerBeliefs(_Frozen):
+    """What the controller believed and asked for, mean over the window `during`."""
+
+    v_fault_pu: FiniteFloat | None = None
+    q_ref_kvar: FiniteFloat | None = None
+    p_ref_kw: FiniteFloat | None = None
+
+
+class Measurements(_Frozen):
+    """Measurements of one record by window; a window that the record does not hold is left out."""
+
+    before: WindowMeasurements | None = None
+    during: WindowMeasurements | None = None
+    after: WindowMeasurements | None = None
+    controller: ControllerBeliefs | None = None
+
+    @model_serializer(mode="wrap")
+    def _leave_out_absent(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return {name: value for name, value in handler(self).items() if value is not None}
+
+
+class TestResult(_Frozen):
+    """One test: its scenario, its verdicts and what was measured."""
+
+    __test__ = False  # not a test class, whatever pytest thinks of the name
+
+    id: str
+    profile: str = ""
+    title: str = ""
+    scenario: dict[str, Any] = Field(default_factory=dict)
+    status: Status
+    checks: tuple[Check, ...] = ()
+    waveforms: str | None = Field(default=None, description="path of the waveforms, relative to results.json")
+    measurements: Measurements = Measurements()
+    clause: str = Field(default="", description="where the test procedure comes from")
+    confidence: str = Field(default="", description="mark of the test procedure's numbers")
+    duration_s: FiniteFloat = Field(default=0.0, description="length of the record")
+
+
+class ProfileSummary(_Frozen):
+    """The profile that was judged against, as a report shows it."""
+
+    id: str
+    title: str
+    digest: str
+    notes: tuple[str, ...] = Field(default=(), description="what is not verified, a sentence each")
+
+
+class Results(_Frozen):
+    """A whole run."""
+
+    schema_version: int = SCHEMA_VERSION
+    status: Status
+    profiles: tuple[ProfileSummary, ...] = ()
+    provenance: dict[str, Any] = Field(default_factory=dict)
+    tests: tuple[TestResult, ...] = ()
+
+    def counts(self) -> dict[Status, int]:
+        """Number of checks by verdict."""
+        found = [check.status for test in self.tests for check in test.checks]
+        return {status: found.count(status) for status in Status}
+
+
+def conclude(
+    tests: Iterable[TestResult], profiles: Iterable[ProfileSummary] = (), provenance: dict[str, Any] | None = None
+) -> Results:
+    """Gather tests into the result of a run; the file's verdict is the worst of its tests'."""
+    tests = tuple(tests)
+    status = worst(test.status for test in tests)
+    return Results(status=status, tests=tests, profiles=tuple(profiles), provenance=provenance or {})
+
+
+EXIT_STATUS = {
+    Status.ERROR: 3,
+    Status.NOT_EVALUATED: 3,
+    Status.FAIL: 1,
+    Status.PASS: 0,
+    Status.NOT_APPLICABLE: 0,
+}
+"""Exit status of the command by the verdict of the run."""

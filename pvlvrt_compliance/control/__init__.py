@@ -1,0 +1,1 @@
+"""The control subsystem of the paper, one block a file."""

@@ -1,0 +1,1 @@
+"""What standards measure, from waveforms alone."""

@@ -1,0 +1,1 @@
+"""The power subsystem of the paper, one block a file."""

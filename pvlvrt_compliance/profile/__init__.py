@@ -1,0 +1,1 @@
+"""Grid codes as data: the model, the files, where every number comes from."""

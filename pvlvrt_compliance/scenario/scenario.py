@@ -1,0 +1,54 @@
+"""One run of the plant: the grid, the weather, and the sag with its instants."""
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from pvlvrt_compliance.scenario.sag import Sag
+
+FREQUENCY_MIN_HZ = 45.0
+FREQUENCY_MAX_HZ = 66.0
+_NOMINAL_FREQUENCIES_HZ = (50.0, 60.0)
+
+
+def nearest_nominal_frequency(frequency_hz: float) -> float:
+    """Return 50 or 60 Hz, whichever is nearer: the nominal frequency of a grid that runs at ``frequency_hz``."""
+    return min(_NOMINAL_FREQUENCIES_HZ, key=lambda nominal: abs(nominal - frequency_hz))
+
+
+class Scenario(BaseModel):
+    """Everything outside the inverter during one run. Times count from the start of the record.
+
+    The grid is a source behind R + jwL; without ``scr`` the source sits at the inverter's terminals.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    sag: Sag
+    duration_s: float = Field(gt=0, le=3600, description="from the start of the sag to its clearing")
+    point_on_wave_deg: float = Field(default=0.0, ge=-360, le=360, description="angle of phase a at the start; 0: maximum")
+    frequency_hz: float = Field(default=50.0, ge=FREQUENCY_MIN_HZ, le=FREQUENCY_MAX_HZ)
+    irradiance_w_m2: float = Field(default=1000.0, ge=0, le=1500)
+    cell_temperature_c: float = Field(default=25.0, ge=-40, le=90)
+    scr: float | None = Field(default=None, gt=0.5, description="short-circuit ratio on 500 kVA; none: stiff")
+    xr: float = Field(default=10.0, gt=0, description="X/R of the grid impedance")
+    before_s: float = Field(default=0.3, ge=0.25, le=60, description="record before the sag")
+    after_s: float = Field(default=1.1, ge=0.1, le=120, description="record after clearing")
+
+    @property
+    def start_s(self) -> float:
+        """Start of the sag (s)."""
+        return self.before_s
+
+    @property
+    def clear_s(self) -> float:
+        """Clearing of the sag (s)."""
+        return self.before_s + self.duration_s
+
+    @property
+    def end_s(self) -> float:
+        """End of the record (s)."""
+        return self.clear_s + self.after_s
+
+    @property
+    def nominal_frequency_hz(self) -> float:
+        """50 or 60 Hz."""
+        return nearest_nominal_frequency(self.frequency_hz)

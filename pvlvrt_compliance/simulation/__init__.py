@@ -1,0 +1,1 @@
+"""Joins plant and controller at their two rates."""

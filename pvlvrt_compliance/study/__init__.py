@@ -1,0 +1,1 @@
+"""Running tests: one, or a whole catalogue."""

@@ -1,0 +1,90 @@
+"""Per-unit base and the spelling of values that people type (``90%``, ``500ms``)."""
+
+import math
+import re
+from dataclasses import dataclass
+
+from pvlvrt_compliance.errors import UsageError
+
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_FRACTION = re.compile(rf"({_NUMBER})\s*(%?)")
+_DURATION = re.compile(rf"({_NUMBER})\s*(ms|s)")
+
+
+@dataclass(frozen=True)
+class Nominal:
+    """Rating of an inverter: the base of every per-unit value.
+
+    Parameters
+    ----------
+    apparent_power_va : float
+        S_nom (VA).
+    phase_voltage_v : float
+        u_gnom, rms, phase to neutral (V).
+    frequency_hz : float
+        Nominal frequency (Hz).
+    """
+
+    apparent_power_va: float = 500e3
+    phase_voltage_v: float = 230.0
+    frequency_hz: float = 50.0
+
+    @property
+    def phase_voltage_peak_v(self) -> float:
+        """Amplitude of the nominal phase-to-neutral voltage (V); 1 pu of voltage."""
+        return math.sqrt(2) * self.phase_voltage_v
+
+    @property
+    def phase_current_peak_a(self) -> float:
+        """Amplitude of the nominal phase current (A); 1 pu of current."""
+        return math.sqrt(2) * self.apparent_power_va / (3 * self.phase_voltage_v)
+
+    @property
+    def voltage_ab_v(self) -> float:
+        """Length of the nominal voltage space vector, power-invariant Clarke (V): sqrt(3) u_gnom."""
+        return math.sqrt(3) * self.phase_voltage_v
+
+    @property
+    def current_ab_a(self) -> float:
+        """Length of the nominal current space vector, power-invariant Clarke (A)."""
+        return self.apparent_power_va / self.voltage_ab_v
+
+    @property
+    def impedance_ohm(self) -> float:
+        """Base impedance (ohm)."""
+        return 3 * self.phase_voltage_v**2 / self.apparent_power_va
+
+
+def parse_fraction(text: str, what: str) -> float:
+    """Read ``90%`` or ``0.9`` as a fraction between 0 and 1.
+
+    Raises
+    ------
+    UsageError
+        When the text is not a number, or outside 0 to 100 %.
+    """
+    match = _FRACTION.fullmatch(text.strip())
+    if match is None:
+        raise UsageError(f"{what}: {text!r} is not a fraction; write 90% or 0.9")
+    value = float(match[1]) / (100 if match[2] else 1)
+    if not 0 <= value <= 1:
+        hint = f' (for {match[1]} percent write "{match[1]}%")' if not match[2] and 1 < value <= 100 else ""
+        raise UsageError(f"{what}: {text!r} is outside 0% to 100%{hint}")
+    return value
+
+
+def parse_duration(text: str, what: str) -> float:
+    """Read ``500ms`` or ``0.5s`` as seconds.
+
+    Raises
+    ------
+    UsageError
+        When the text has no unit, is not a number, or is not above zero.
+    """
+    match = _DURATION.fullmatch(text.strip())
+    if match is None:
+        raise UsageError(f"{what}: {text!r} is not a duration; write 500ms or 0.5s")
+    value = float(match[1]) * (1e-3 if match[2] == "ms" else 1)
+    if not (0 < value and math.isfinite(value)):
+        raise UsageError(f"{what}: {text!r} must be longer than zero")
+    return value
