@@ -6,10 +6,7 @@ The functions take scalars or arrays; kernels inline the scalar forms below.
 """
 
 import math
-from typing import NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Any, NamedTuple
 
 SQRT2_3 = math.sqrt(2 / 3)
 SQRT3_2 = math.sqrt(3) / 2
@@ -17,8 +14,9 @@ SQRT3_2 = math.sqrt(3) / 2
 ROTATION_120 = complex(-0.5, SQRT3_2)
 """The operator a = exp(j 2 pi / 3)."""
 
-Complex = complex | NDArray[np.complex128]
-Real = float | NDArray[np.float64]
+# The kernels call these with scalars and the measurements with arrays; both are one formula.
+Complex = Any
+Real = Any
 
 
 class Sequences(NamedTuple):

@@ -24,7 +24,9 @@ class Scenario(BaseModel):
 
     sag: Sag
     duration_s: float = Field(gt=0, le=3600, description="from the start of the sag to its clearing")
-    point_on_wave_deg: float = Field(default=0.0, ge=-360, le=360, description="angle of phase a at the start; 0: maximum")
+    point_on_wave_deg: float = Field(
+        default=0.0, ge=-360, le=360, description="angle of phase a at the start; 0: maximum"
+    )
     frequency_hz: float = Field(default=50.0, ge=FREQUENCY_MIN_HZ, le=FREQUENCY_MAX_HZ)
     irradiance_w_m2: float = Field(default=1000.0, ge=0, le=1500)
     cell_temperature_c: float = Field(default=25.0, ge=-40, le=90)

@@ -79,7 +79,7 @@ class Segment:
     @property
     def t_s(self) -> Samples:
         """Time of every sample (s)."""
-        return self.t0_s + self.dt_s * np.arange(len(self))
+        return self.t0_s + self.dt_s * np.arange(len(self), dtype=np.float64)
 
     def index_at(self, t_s: float) -> int:
         """Index of the first sample at or after a time, between 0 and the number of samples."""
@@ -146,7 +146,8 @@ class Waveforms:
         slack = max(s.dt_s for s in self.segments)
         if start_s < self.t0_s - slack or stop_s > self.end_s + 2 * slack:
             raise MeasurementError(
-                f"the window {start_s:.3f} s to {stop_s:.3f} s leaves the record ({self.t0_s:.3f} s to {self.end_s:.3f} s)"
+                f"the window {start_s:.3f} s to {stop_s:.3f} s leaves the record "
+                f"({self.t0_s:.3f} s to {self.end_s:.3f} s)"
             )
         for segment in self.segments:
             if start_s >= segment.t0_s - segment.dt_s and stop_s <= segment.end_s + 2 * segment.dt_s:
