@@ -85,6 +85,6 @@ def parse_duration(text: str, what: str) -> float:
     if match is None:
         raise UsageError(f"{what}: {text!r} is not a duration; write 500ms or 0.5s")
     value = float(match[1]) * (1e-3 if match[2] == "ms" else 1)
-    if not (0 < value and math.isfinite(value)):
+    if not (value > 0 and math.isfinite(value)):
         raise UsageError(f"{what}: {text!r} must be longer than zero")
     return value

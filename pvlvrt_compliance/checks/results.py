@@ -4,7 +4,9 @@ from collections.abc import Iterable
 from enum import StrEnum
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, SerializerFunctionWrapHandler, model_serializer
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+
+from pvlvrt_compliance.measure.quantities import Measurements
 
 SCHEMA_VERSION = 1
 
@@ -44,45 +46,6 @@ class Check(_Frozen):
     clause: str = ""
     confidence: str = Field(default="", description="the weakest mark of the numbers that the verdict rests on")
     message: str = ""
-
-
-class WindowMeasurements(_Frozen):
-    """What is measured in one window of a record. None where a quantity cannot be had (no current, no DC channel)."""
-
-    start_s: FiniteFloat
-    end_s: FiniteFloat
-    voltage_positive_pu: FiniteFloat | None = None
-    voltage_negative_pu: FiniteFloat | None = None
-    active_power_kw: FiniteFloat | None = None
-    reactive_power_kvar: FiniteFloat | None = None
-    active_power_2f_kw: FiniteFloat | None = None
-    current_phase_pu: tuple[FiniteFloat, FiniteFloat, FiniteFloat] | None = None
-    current_peak_pu: FiniteFloat | None = None
-    dc_voltage_mean_v: FiniteFloat | None = None
-    dc_voltage_2f_percent: FiniteFloat | None = None
-    current_thd_percent: FiniteFloat | None = None
-    frequency_hz: FiniteFloat | None = None
-
-
-class ControllerBeliefs(_Frozen):
-    """What the controller believed and asked for, mean over the window `during`."""
-
-    v_fault_pu: FiniteFloat | None = None
-    q_ref_kvar: FiniteFloat | None = None
-    p_ref_kw: FiniteFloat | None = None
-
-
-class Measurements(_Frozen):
-    """Measurements of one record by window; a window that the record does not hold is left out."""
-
-    before: WindowMeasurements | None = None
-    during: WindowMeasurements | None = None
-    after: WindowMeasurements | None = None
-    controller: ControllerBeliefs | None = None
-
-    @model_serializer(mode="wrap")
-    def _leave_out_absent(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        return {name: value for name, value in handler(self).items() if value is not None}
 
 
 class TestResult(_Frozen):
