@@ -1,0 +1,68 @@
+"""The one decorator for compiled code, and where its cache lives.
+
+numba's cache key sees the file of the compiled function only, not the files of the functions it calls. The cache
+folder is therefore named after a digest of every kernel source, so that an edit anywhere compiles anew.
+"""
+
+import hashlib
+import os
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+import platformdirs
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+_PACKAGE = Path(__file__).resolve().parent
+_KERNEL_FOLDERS = ("control", "plant", "simulation")
+_KERNEL_FILES = ("kernel.py", "space_vectors.py")
+
+
+@cache
+def kernel_digest() -> str:
+    """Digest of all sources that compiled code is made from (16 hexadecimal digits)."""
+    digest = hashlib.sha256(f"numba {numba.__version__}".encode())
+    files = [_PACKAGE / name for name in _KERNEL_FILES]
+    for folder in _KERNEL_FOLDERS:
+        files += sorted((_PACKAGE / folder).glob("*.py"))
+    for file in files:
+        digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
+    return digest.hexdigest()[:16]
+
+
+def cache_folder() -> Path:
+    """Folder of the compiled code of this version of the sources; ``NUMBA_CACHE_DIR`` moves it."""
+    root = os.environ.get("NUMBA_CACHE_DIR") or platformdirs.user_cache_dir("pvlvrt-compliance", appauthor=False)
+    return Path(root) / f"kernels-{kernel_digest()}"
+
+
+def kernel(function: F) -> F:
+    """Compile a block: inlined into whatever calls it, never fast-math, float64."""
+    compiled: F = numba.njit(function, forceinline=True)
+    return compiled
+
+
+def plain(function: F) -> F:
+    """The Python behind a kernel, for the odd call outside compiled code that is not worth compiling for."""
+    python: F = getattr(function, "py_func", function)
+    return python
+
+
+def cached_kernel(function: F) -> F:
+    """Compile an entry point, which Python calls, and keep the machine code between processes.
+
+    The global interpreter lock is released while it runs.
+    """
+    # numba reads the folder when the function is decorated; other users of numba in this process keep theirs.
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(cache_folder())
+    try:
+        compiled: F = numba.njit(function, cache=True, nogil=True)
+    except RuntimeError:  # no writable folder anywhere: compile every time rather than not at all
+        compiled = numba.njit(function, nogil=True)
+    finally:
+        numba.config.CACHE_DIR = before
+    return compiled

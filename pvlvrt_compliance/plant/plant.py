@@ -1,0 +1,118 @@
+"""The power subsystem: wires array, DC link, inverter, line, grid and protection (Fig. 1)."""
+
+from typing import NamedTuple
+
+from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.plant.grid import GridParams, GridState, grid_at, grid_step, source_voltage, zero_sequence
+from pvlvrt_compliance.plant.inverter import Bridge, freewheeling, limit_modulation, modulated
+from pvlvrt_compliance.plant.line import LineParams, line_step, pcc_voltage
+from pvlvrt_compliance.plant.protection import NO_TRIP, ProtectionParams, RelayState, relays_step
+from pvlvrt_compliance.plant.pv_array import PvParams, array_current, diode_voltage
+
+
+class PlantParams(NamedTuple):
+    """Parameters by block, and the plant step."""
+
+    pv: PvParams
+    line: LineParams
+    grid: GridParams
+    protection: ProtectionParams
+    C: float  # DC-link capacitance (F)
+    G: float  # irradiance, in units of 1000 W/m2 (-)
+    t_breaker: float  # after a trip the breaker parts by then, though current may still flow (s)
+    T_S: float  # plant step (s)
+    ratio: int  # plant steps in a control period (-)
+
+
+class PlantState(NamedTuple):
+    """States by block."""
+
+    i: complex  # inverter current (A)
+    v_dc: float  # DC-link voltage (V)
+    x_pv: float  # junction voltage of a module (V)
+    i_pv: float  # array current (A)
+    k_grid: int  # entry of the grid's breakpoints (-)
+    relay: RelayState
+    trip: int  # code of the trip (-)
+    t_trip: float  # time since the trip (s)
+    closed: bool  # breaker
+
+
+class Observed(NamedTuple):
+    """Quantities at an instant, for sensors and recorders."""
+
+    u_ab: complex  # voltage at the PCC (V)
+    u0_ab: complex  # voltage of the source, as without the inverter's current (V)
+    u_zero: float  # zero-sequence voltage, phase to neutral (V)
+
+
+@kernel
+def bridge(m: complex, i: complex, v_dc: float, blocked: bool) -> Bridge:
+    """Bridge in the state it is in."""
+    return freewheeling(i, v_dc) if blocked else modulated(m, i, v_dc)
+
+
+@kernel
+def extinguish(i_next: complex, i: complex, blocked: bool) -> complex:
+    """Current after a step; what diodes carry ends where it would reverse."""
+    reverses = i_next.real * i.real + i_next.imag * i.imag <= 0
+    return 0j if blocked and reverses else i_next
+
+
+@kernel
+def terminal_voltage(x: PlantState, i: complex, u_inv: complex, e: complex, p: PlantParams) -> complex:
+    """Voltage at the PCC (V): the source's own once no current can flow."""
+    conducting = x.closed and (x.trip == NO_TRIP or i != 0)
+    return pcc_voltage(i, u_inv, e, p.line) if conducting else e
+
+
+@kernel
+def observe(x: PlantState, m: complex, t: float, p: PlantParams) -> Observed:
+    """Voltages at the instant ``t`` (s) of a state, under the modulating signal that has led to it."""
+    grid = grid_at(t, x.k_grid, p.T_S, p.grid)
+    e = source_voltage(grid, p.grid)
+    u_inv = bridge(limit_modulation(m), x.i, x.v_dc, x.trip != NO_TRIP).u
+    return Observed(u_ab=terminal_voltage(x, x.i, u_inv, e, p), u0_ab=e, u_zero=zero_sequence(grid, p.grid))
+
+
+@kernel
+def plant_step(x: PlantState, m: complex, grid: GridState, p: PlantParams) -> PlantState:
+    """Advance by one plant step under a constant modulating signal; ``grid`` is at the middle of the step.
+
+    Second order: DC voltage and source are taken at the middle of the step, the line is solved exactly over it.
+    """
+    per_farad = p.T_S / p.C
+    blocked = x.trip != NO_TRIP
+    v_mid = max(x.v_dc + 0.5 * per_farad * (x.i_pv - bridge(m, x.i, x.v_dc, blocked).i_dc), 0.0)
+    e = source_voltage(grid, p.grid)
+    u_inv = bridge(m, x.i, v_mid, blocked).u
+    i = extinguish(line_step(x.i, u_inv, e, p.line), x.i, blocked) if x.closed else 0j
+    i_mid = 0.5 * (x.i + i)
+    x_pv = diode_voltage(v_mid, p.G, x.x_pv, p.pv)
+    i_pv = array_current(v_mid, x_pv, p.pv)
+    v_dc = max(x.v_dc + per_farad * (i_pv - bridge(m, i_mid, v_mid, blocked).i_dc), 0.0)
+    u_pcc = terminal_voltage(x, i_mid, u_inv, e, p)
+    relay, trip = relays_step(x.relay, u_pcc, i, v_dc, p.protection, p.T_S)
+    t_trip = x.t_trip + p.T_S if blocked else 0.0
+    return PlantState(
+        i=i,
+        v_dc=v_dc,
+        x_pv=x_pv,
+        i_pv=i_pv,
+        k_grid=grid.k,
+        relay=relay,
+        trip=x.trip if blocked else trip,
+        t_trip=t_trip,
+        closed=x.closed and not (blocked and (i == 0 or t_trip > p.t_breaker)),
+    )
+
+
+@kernel
+def advance(x: PlantState, m: complex, t: float, p: PlantParams) -> PlantState:
+    """Advance from the instant ``t`` (s) by one control period, under the modulating signal given for it."""
+    m = limit_modulation(m)
+    grid = grid_at(t + 0.5 * p.T_S, x.k_grid, p.T_S, p.grid)
+    for n in range(p.ratio):
+        x = plant_step(x, m, grid, p)
+        grid = grid_step(grid, t + (n + 1.5) * p.T_S, p.T_S, p.grid)
+    return x

@@ -1,0 +1,157 @@
+"""Every parameter of plant, protection, controller and simulation, in words with units: what `--set` reaches."""
+
+import json
+from collections.abc import Iterable
+from typing import Annotated, Any, Self
+
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError, model_validator
+
+from pvlvrt_compliance.errors import UsageError, did_you_mean
+
+Positive = Annotated[FiniteFloat, Field(gt=0)]
+NotNegative = Annotated[FiniteFloat, Field(ge=0)]
+
+
+class _Group(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class SimulationParameters(_Group):
+    """The two rates, and the unrecorded time before a record."""
+
+    plant_step_us: Positive = 5.1196
+    control_ratio: int = Field(default=8, ge=1, le=1000, description="plant steps in a control period")
+    settling_s: Annotated[FiniteFloat, Field(ge=0, le=60)] = 0.5
+
+
+class PlantParameters(_Group):
+    """The power subsystem (Tables 1 and 2)."""
+
+    apparent_power_kva: Positive = 500.0
+    phase_voltage_v: Positive = 230.0
+    dc_link_capacitance_f: Positive = 0.065
+    filter_inductance_h: Positive = 0.15e-3
+    filter_resistance_ohm: NotNegative = 1e-3
+    modules_in_series: int = Field(default=22, ge=1, le=1000)
+    strings_in_parallel: int = Field(default=72, ge=1, le=100000)
+    breaker_opening_s: NotNegative = Field(
+        default=0.05, description="a tripped breaker parts once the current has ended, at the latest after this"
+    )
+
+
+class ProtectionParameters(_Group):
+    """Relays of the plant. Never taken from the profile under test."""
+
+    overcurrent_pu: Positive = 2.0
+    dc_overvoltage_v: Positive = 1100.0
+    undervoltage_curve: tuple[tuple[NotNegative, NotNegative], ...] = Field(
+        default=((0.0, 0.0), (0.15, 0.0), (1.5, 0.85)), min_length=1, description="points (s, pu of positive sequence)"
+    )
+    undervoltage_delay_s: NotNegative = 0.05
+    frequency_min_hz: Positive | None = Field(default=None, description="none: 5 Hz below nominal")
+    frequency_max_hz: Positive | None = Field(default=None, description="none: 5 Hz above nominal")
+    frequency_delay_s: NotNegative = 0.2
+
+    @model_validator(mode="after")
+    def _times_increase(self) -> Self:
+        times = [t for t, _ in self.undervoltage_curve]
+        if any(b <= a for a, b in zip(times, times[1:], strict=False)):
+            raise ValueError("the times of undervoltage_curve must increase")
+        return self
+
+
+class ControllerParameters(_Group):
+    """The control subsystem (Table 3); what the paper leaves open is said so."""
+
+    sogi_gain: Positive = Field(default=2**0.5, description="K")
+    fll_gain: NotNegative = Field(default=50.0, description="Gamma (1/s)")
+    fll_frequency_min_hz: Positive = Field(default=40.0, description="guard, not in the paper")
+    fll_frequency_max_hz: Positive = Field(default=70.0, description="guard, not in the paper")
+    fault_threshold_pu: Positive = Field(default=0.85, description="a fault is flagged below it")
+    reactive_plateau_voltage_pu: NotNegative = Field(default=0.5, description="eq (9): full reactive power below it")
+    reactive_plateau_pu: NotNegative = Field(default=0.75, description="eq (9): full reactive power")
+    sequence_difference_min_pu: Positive = Field(
+        default=0.005, description="below this V+ - V- the current reference is zero; guard, not in the paper"
+    )
+    dc_proportional_gain_w_per_v: NotNegative = 3977.5
+    dc_integral_gain_w_per_vs: NotNegative = 152110.0
+    pr_proportional_gain: NotNegative = Field(default=0.0011, description="1/A")
+    pr_integral_gain: NotNegative = Field(default=0.1, description="1/A at resonance")
+    pr_cutoff_rad_s: Positive = Field(default=1.0, description="w_c of every resonator")
+    hc5_integral_gain: NotNegative = Field(default=0.1, description="1/A at resonance; not in the paper")
+    hc7_integral_gain: NotNegative = Field(default=0.1, description="1/A at resonance; not in the paper")
+    hc11_integral_gain: NotNegative = Field(default=0.1, description="1/A at resonance; not in the paper")
+    hc13_integral_gain: NotNegative = Field(default=0.1, description="1/A at resonance; not in the paper")
+    resonator_lead_samples: int = Field(default=2, ge=0, le=20, description="delay compensation; not in the paper")
+    mppt_period_s: Positive = Field(default=0.04, description="between two perturbations; not in the paper")
+    mppt_step_v: NotNegative = Field(default=0.5, description="size of a perturbation; not in the paper")
+    mppt_voltage_min_v: NotNegative = Field(default=600.0, description="lower limit of v*_DC; not in the paper")
+    mppt_voltage_max_v: Positive = Field(default=1000.0, description="upper limit of v*_DC; not in the paper")
+    grid_voltage_feedforward: bool = Field(default=False, description="the paper names none")
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        for low, high in (
+            ("fll_frequency_min_hz", "fll_frequency_max_hz"),
+            ("reactive_plateau_voltage_pu", "fault_threshold_pu"),
+            ("mppt_voltage_min_v", "mppt_voltage_max_v"),
+        ):
+            if getattr(self, low) >= getattr(self, high):
+                raise ValueError(f"{low} must be below {high}")
+        return self
+
+
+class Parameters(_Group):
+    """All parameters of a run but its scenario."""
+
+    simulation: SimulationParameters = SimulationParameters()
+    plant: PlantParameters = PlantParameters()
+    protection: ProtectionParameters = ProtectionParameters()
+    controller: ControllerParameters = ControllerParameters()
+
+
+def parameter_names() -> list[str]:
+    """All names that `--set` takes, as ``group.name``."""
+    return [
+        f"{group}.{name}"
+        for group, field in Parameters.model_fields.items()
+        for name in field.annotation.model_fields  # type: ignore[union-attr]
+    ]
+
+
+def parameters_from(assignments: Iterable[str]) -> Parameters:
+    """Defaults with ``group.name=value`` applied; values are written as in JSON.
+
+    Raises
+    ------
+    UsageError
+        When a name is unknown (with the near misses), given twice, or a value is not allowed.
+    """
+    known = parameter_names()
+    groups: dict[str, dict[str, Any]] = {}
+    for assignment in assignments:
+        name, equals, text = assignment.partition("=")
+        name = name.strip()
+        if not equals:
+            raise UsageError(f"--set {assignment}: write --set group.name=value")
+        if name not in known:
+            raise UsageError(f"--set {name}: unknown parameter{did_you_mean(name, known)}")
+        group, _, key = name.partition(".")
+        if key in groups.setdefault(group, {}):
+            raise UsageError(f"--set {name}: given twice")
+        groups[group][key] = _value(name, text)
+    try:
+        return Parameters.model_validate(groups)
+    except ValidationError as error:
+        raise UsageError("; ".join(_problem(e["loc"], e["msg"]) for e in error.errors())) from None
+
+
+def _value(name: str, text: str) -> Any:
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError:
+        raise UsageError(f"--set {name}: {text!r} is not a value; write a number, true, false, null or [..]") from None
+
+
+def _problem(location: tuple[int | str, ...], message: str) -> str:
+    return f"--set {'.'.join(str(part) for part in location)}: {message.removeprefix('Value error, ')}"

@@ -1,0 +1,103 @@
+"""The only loop over time: samples, controller, plant, recorder, at two rates."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pvlvrt_compliance.control.controller import (
+    ControllerParams,
+    ControllerSignals,
+    ControllerState,
+    Measured,
+    controller_step,
+)
+from pvlvrt_compliance.kernel import cached_kernel, kernel
+from pvlvrt_compliance.plant.plant import Observed, PlantParams, PlantState, advance, observe
+from pvlvrt_compliance.space_vectors import SQRT2_3, SQRT3_2
+
+COMPLETED, NOT_FINITE = range(2)
+"""How a run ended."""
+
+CHANNELS = (
+    *("u_a_v", "u_b_v", "u_c_v", "u0_a_v", "u0_b_v", "u0_c_v", "i_a_a", "i_b_a", "i_c_a"),
+    *("v_dc_v", "i_pv_a", "irradiance_w_m2", "connected"),
+    *("v_fault_pu", "fault_signal", "frequency_estimate_hz", "v_dc_ref_v", "p_ref_w", "q_ref_var"),
+    *("i_ref_alpha_a", "i_ref_beta_a", "m_alpha", "m_beta"),
+)
+"""Channels of a record, in the order of its columns; from ``v_fault_pu`` on the controller's own."""
+
+
+class Outcome(NamedTuple):
+    """How a run ended, and where the plant was then."""
+
+    status: int
+    samples: int  # recorded
+    plant: PlantState
+
+
+@kernel
+def record_phases(row: NDArray[np.float64], column: int, ab: complex, zero: float) -> None:
+    """Write the three phases of a vector, zero sequence included, from a column on."""
+    along, across = SQRT2_3 * ab.real, SQRT2_3 * SQRT3_2 * ab.imag
+    row[column] = along + zero
+    row[column + 1] = -0.5 * along + across + zero
+    row[column + 2] = -0.5 * along - across + zero
+
+
+@kernel
+def record(row: NDArray[np.float64], x: PlantState, y: Observed, s: ControllerSignals, G: float) -> None:
+    """Write one sample in the order of `CHANNELS`."""
+    record_phases(row, 0, y.u_ab, y.u_zero)
+    record_phases(row, 3, y.u0_ab, y.u_zero)
+    record_phases(row, 6, x.i, 0.0)
+    row[9], row[10], row[11], row[12] = x.v_dc, x.i_pv, 1000.0 * G, 1.0 if x.closed else 0.0
+    row[13], row[14], row[15], row[16] = s.V_fault, 1.0 if s.fault else 0.0, s.w / (2 * math.pi), s.v_ref
+    row[17], row[18] = s.P_ref, s.Q_ref
+    row[19], row[20], row[21], row[22] = s.i_ref.real, s.i_ref.imag, s.m.real, s.m.imag
+
+
+@kernel
+def is_finite(x: PlantState, s: ControllerSignals) -> bool:
+    """Whether every number that the next sample depends on is one: a sum is finite only if all its terms are."""
+    return math.isfinite(x.v_dc + x.i.real + x.i.imag + x.i_pv + s.m.real + s.m.imag + s.w + s.P_ref + s.v_ref)
+
+
+@cached_kernel
+def run(
+    plant: PlantState,
+    controller: ControllerState,
+    m: complex,
+    first: int,
+    plant_params: PlantParams,
+    controller_params: ControllerParams,
+    samples: NDArray[np.float64],
+) -> Outcome:
+    """Simulate from control period ``first`` (negative: unrecorded settling) to the end of ``samples``.
+
+    The controller samples at the beginning of a period; what it computes acts from the next period on, held for one:
+    1.5 periods in all. Sample n is at n T_reg.
+
+    Parameters
+    ----------
+    plant, controller : PlantState, ControllerState
+        States at the beginning.
+    m : complex
+        Modulating signal of the first period (-).
+    samples : array, shape (n, len(CHANNELS))
+        Filled with the record.
+    """
+    T_reg = plant_params.ratio * plant_params.T_S
+    for n in range(first, len(samples)):
+        t = n * T_reg
+        y = observe(plant, m, t, plant_params)
+        sampled = Measured(u_g_ab=y.u_ab, i_ab=plant.i, v_dc=plant.v_dc, i_pv=plant.i_pv)
+        controller, signals = controller_step(controller, sampled, controller_params)
+        if not is_finite(plant, signals):
+            return Outcome(status=NOT_FINITE, samples=max(n, 0), plant=plant)
+        if n >= 0:
+            record(samples[n], plant, y, signals, plant_params.G)
+        plant = advance(plant, m, t, plant_params)
+        m = signals.m
+    return Outcome(status=COMPLETED, samples=len(samples), plant=plant)

@@ -1,0 +1,197 @@
+"""The one place where words with units become the symbols of the kernels, and where a run's first state is made."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from pvlvrt_compliance.control import dc_voltage_regulator, mppt, msogi_fll
+from pvlvrt_compliance.control.controller import ControllerParams, ControllerState
+from pvlvrt_compliance.control.current_references import CurrentReferenceParams
+from pvlvrt_compliance.control.current_regulator import CurrentRegulatorParams, at_rest_regulator
+from pvlvrt_compliance.control.dc_voltage_regulator import DcVoltageRegulatorParams
+from pvlvrt_compliance.control.lvrt import LvrtParams
+from pvlvrt_compliance.control.modulator import ModulatorParams
+from pvlvrt_compliance.control.mppt import MpptParams
+from pvlvrt_compliance.control.sogi import in_steady_state, rotation
+from pvlvrt_compliance.kernel import plain
+from pvlvrt_compliance.plant import line, pv_array
+from pvlvrt_compliance.plant.grid import GridParams
+from pvlvrt_compliance.plant.inverter import K_PWM, M_MAX
+from pvlvrt_compliance.plant.plant import PlantParams, PlantState
+from pvlvrt_compliance.plant.protection import NO_TRIP, ProtectionParams, relays_at_rest
+from pvlvrt_compliance.plant.pv_array import STC_IRRADIANCE, PvParams
+from pvlvrt_compliance.scenario.parameters import Parameters
+from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.units import Nominal
+
+_SQRT3_2 = math.sqrt(1.5)  # length of a power-invariant space vector per unit of phase amplitude
+_FREQUENCY_BAND_HZ = 5.0  # default setting of the frequency relay around nominal
+
+
+class Start(NamedTuple):
+    """State of everything at the beginning of the unrecorded settling."""
+
+    plant: PlantState
+    controller: ControllerState
+    m: complex  # modulating signal of the first period (-)
+
+
+def nominal_of(parameters: Parameters, scenario: Scenario) -> Nominal:
+    """Rating of the plant: the base of per-unit values."""
+    return Nominal(
+        apparent_power_va=1e3 * parameters.plant.apparent_power_kva,
+        phase_voltage_v=parameters.plant.phase_voltage_v,
+        frequency_hz=scenario.nominal_frequency_hz,
+    )
+
+
+def pv_params(parameters: Parameters, scenario: Scenario) -> PvParams:
+    """PV array at the scenario's cell temperature."""
+    p = parameters.plant
+    return pv_array.fit(pv_array.STP320_24_VE, scenario.cell_temperature_c, p.modules_in_series, p.strings_in_parallel)
+
+
+def control_period_s(parameters: Parameters) -> float:
+    """T_reg (s)."""
+    return parameters.simulation.control_ratio * parameters.simulation.plant_step_us * 1e-6
+
+
+def grid_params(scenario: Scenario, nominal: Nominal) -> GridParams:
+    """Source that sags by the scenario: healthy, sagged from its start, healthy from its clearing."""
+    w = 2 * math.pi * scenario.frequency_hz
+    pos, neg, zero = scenario.sag.sequences_pu()
+    start, clear = scenario.start_s, scenario.clear_s
+    t = np.array([-1e6, start, clear])
+    peak = nominal.phase_voltage_peak_v
+    angle = math.radians(scenario.point_on_wave_deg)
+    return GridParams(
+        t=t,
+        theta=np.remainder(angle + w * (t - start), 2 * math.pi),
+        w=np.full(3, w),
+        u_pos=_SQRT3_2 * peak * np.array([1, pos, 1], dtype=np.complex128),
+        # A negative-sequence phasor turns backwards as a space vector: its angle changes sign.
+        u_neg=_SQRT3_2 * peak * np.array([0, neg.conjugate(), 0], dtype=np.complex128),
+        u_zero=peak * np.array([0, zero, 0], dtype=np.complex128),
+    )
+
+
+def protection_params(parameters: Parameters, nominal: Nominal) -> ProtectionParams:
+    """Settings of the relays."""
+    p = parameters.protection
+    low = nominal.frequency_hz - _FREQUENCY_BAND_HZ if p.frequency_min_hz is None else p.frequency_min_hz
+    high = nominal.frequency_hz + _FREQUENCY_BAND_HZ if p.frequency_max_hz is None else p.frequency_max_hz
+    w_nom = 2 * math.pi * nominal.frequency_hz
+    return ProtectionParams(
+        i_max=p.overcurrent_pu * nominal.phase_current_peak_a,
+        v_dc_max=p.dc_overvoltage_v,
+        u_nom=nominal.voltage_ab_v,
+        curve_t=np.array([t for t, _ in p.undervoltage_curve]),
+        curve_u=np.array([u for _, u in p.undervoltage_curve]),
+        curve_delay=p.undervoltage_delay_s,
+        w_nom=w_nom,
+        w_min=2 * math.pi * low,
+        w_max=2 * math.pi * high,
+        t_frequency=p.frequency_delay_s,
+        turn=plain(rotation)(w_nom * parameters.simulation.plant_step_us * 1e-6),
+    )
+
+
+def plant_params(parameters: Parameters, scenario: Scenario) -> PlantParams:
+    """Parameters of the plant in one scenario."""
+    p = parameters.plant
+    nominal = nominal_of(parameters, scenario)
+    T_S = 1e-6 * parameters.simulation.plant_step_us
+    Z = nominal.impedance_ohm / scenario.scr if scenario.scr is not None else 0.0
+    R_g = Z / math.hypot(1, scenario.xr)
+    L_g = R_g * scenario.xr / (2 * math.pi * nominal.frequency_hz)
+    return PlantParams(
+        pv=pv_params(parameters, scenario),
+        line=line.design(p.filter_inductance_h, p.filter_resistance_ohm, L_g, R_g, T_S),
+        grid=grid_params(scenario, nominal),
+        protection=protection_params(parameters, nominal),
+        C=p.dc_link_capacitance_f,
+        G=scenario.irradiance_w_m2 / STC_IRRADIANCE,
+        t_breaker=p.breaker_opening_s,
+        T_S=T_S,
+        ratio=parameters.simulation.control_ratio,
+    )
+
+
+def controller_params(parameters: Parameters, scenario: Scenario) -> ControllerParams:
+    """Parameters of the controller."""
+    c = parameters.controller
+    nominal = nominal_of(parameters, scenario)
+    T_reg = control_period_s(parameters)
+    u_nom = nominal.voltage_ab_v
+    return ControllerParams(
+        sync=msogi_fll.design(c.sogi_gain, c.fll_gain, c.fll_frequency_min_hz, c.fll_frequency_max_hz, u_nom),
+        lvrt=LvrtParams(
+            S_nom=nominal.apparent_power_va,
+            u_nom=u_nom,
+            V_detect=c.fault_threshold_pu,
+            V_full=c.reactive_plateau_voltage_pu,
+            Q_full=c.reactive_plateau_pu,
+        ),
+        dc_voltage=DcVoltageRegulatorParams(K_P=c.dc_proportional_gain_w_per_v, K_I=c.dc_integral_gain_w_per_vs),
+        mppt=MpptParams(
+            period=max(round(c.mppt_period_s / T_reg), 2),
+            dv=c.mppt_step_v,
+            v_min=c.mppt_voltage_min_v,
+            v_max=c.mppt_voltage_max_v,
+        ),
+        references=CurrentReferenceParams(u_pos_less_neg_min=c.sequence_difference_min_pu * u_nom),
+        current=CurrentRegulatorParams(
+            K_P=c.pr_proportional_gain,
+            K_I=c.pr_integral_gain,
+            K_I5=c.hc5_integral_gain,
+            K_I7=c.hc7_integral_gain,
+            K_I11=c.hc11_integral_gain,
+            K_I13=c.hc13_integral_gain,
+            w_c=c.pr_cutoff_rad_s,
+            lead=c.resonator_lead_samples,
+        ),
+        modulator=ModulatorParams(K_PWM=K_PWM, m_max=M_MAX, feedforward=float(c.grid_voltage_feedforward)),
+        T=T_reg,
+    )
+
+
+def steady_state(plant: PlantParams, controller: ControllerParams, scenario: Scenario, t: float) -> Start:
+    """Normal operation at the instant ``t`` (s): the maximum-power point, or S_nom right of it.
+
+    The regulators' resonators start where the inverter balances the grid voltage; what is left of the transient
+    (losses, resonant error) settles before the record begins.
+    """
+    best = pv_array.maximum_power_point(scenario.irradiance_w_m2, plant.pv)
+    P = min(best.p, controller.lvrt.S_nom)
+    v_dc = max(pv_array.voltage_at_power(P, scenario.irradiance_w_m2, plant.pv), controller.mppt.v_min)
+    v_ref = min(max(best.v, controller.mppt.v_min), controller.mppt.v_max)
+    w = float(plant.grid.w[0])
+    theta = float(plant.grid.theta[0] + w * (t - plant.grid.t[0]))
+    u = controller.lvrt.u_nom * complex(math.cos(theta), math.sin(theta))
+    i = P / abs(u) ** 2 * u
+    m = u / (K_PWM * v_dc)
+    i_pv = pv_array.current_at(v_dc, scenario.irradiance_w_m2, plant.pv)
+    regulator = at_rest_regulator()
+    if controller.current.K_I > 0:
+        regulator = regulator._replace(h1=in_steady_state(m / controller.current.K_I))
+    return Start(
+        plant=PlantState(
+            i=i,
+            v_dc=v_dc,
+            x_pv=v_dc / plant.pv.n_series + plant.pv.R_s * i_pv / plant.pv.n_parallel,
+            i_pv=i_pv,
+            k_grid=0,
+            relay=relays_at_rest(u, w),
+            trip=NO_TRIP,
+            t_trip=0.0,
+            closed=True,
+        ),
+        controller=ControllerState(
+            sync=msogi_fll.locked(u, w),
+            dc_voltage=dc_voltage_regulator.settled(P, v_dc, v_ref, controller.dc_voltage),
+            mppt=mppt.searching_from(v_ref),
+            current=regulator,
+        ),
+        m=m,
+    )
