@@ -18,7 +18,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 _PACKAGE = Path(__file__).resolve().parent
 _KERNEL_FOLDERS = ("control", "plant", "simulation")
-_KERNEL_FILES = ("kernel.py", "space_vectors.py")
+_KERNEL_FILES = ("kernel.py", "space_vectors.py", "vectors.py", "sogi.py")
 
 
 @cache

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.vectors import ahead, length, scaled
 
 
 class CurrentReferenceParams(NamedTuple):
@@ -19,7 +20,7 @@ def current_references(
 
     i_P* = (u+ - u-) P* / (|u+|^2 - |u-|^2),  i_Q* = -j (u+ + u-) Q* / (|u+|^2 - |u-|^2)
     """
-    if abs(u_pos) - abs(u_neg) < p.u_pos_less_neg_min:
+    if length(u_pos) - length(u_neg) < p.u_pos_less_neg_min:
         return 0j
     D = u_pos.real**2 + u_pos.imag**2 - u_neg.real**2 - u_neg.imag**2
-    return ((u_pos - u_neg) * P_ref - 1j * (u_pos + u_neg) * Q_ref) / D
+    return scaled(P_ref / D, u_pos - u_neg) - scaled(Q_ref / D, ahead(u_pos + u_neg))

@@ -2,8 +2,9 @@
 
 from typing import NamedTuple
 
-from pvlvrt_compliance.control.sogi import Rotation, SogiState, Turns, at_rest, sogi_step
 from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.sogi import SogiState, Turns, at_rest, sogi_step
+from pvlvrt_compliance.vectors import Rotation, scaled
 
 
 class CurrentRegulatorParams(NamedTuple):
@@ -38,7 +39,7 @@ def at_rest_regulator() -> CurrentRegulatorState:
 @kernel
 def resonator_step(x: SogiState, e: complex, k: float, turn: Rotation) -> SogiState:
     """Advance 2 w_c s / (s^2 + 2 w_c s + w^2) by one sample; k = 2 w_c / w."""
-    return sogi_step(x, k * (e - x.u), turn)
+    return sogi_step(x, scaled(k, e - x.u), turn)
 
 
 @kernel
@@ -46,7 +47,7 @@ def leading_output(x: SogiState, turn: Rotation, lead: int) -> complex:
     """Output of a resonator as it will be ``lead`` samples ahead if left alone."""
     u, qu = x.u, x.qu
     for _ in range(lead):
-        u, qu = turn.c * u - turn.s * qu, turn.s * u + turn.c * qu
+        u, qu = scaled(turn.c, u) - scaled(turn.s, qu), scaled(turn.s, u) + scaled(turn.c, qu)
     return u
 
 
@@ -66,7 +67,9 @@ def current_regulator_step(
         h11=resonator_step(x.h11, e, k / 11, turns.h11),
         h13=resonator_step(x.h13, e, k / 13, turns.h13),
     )
-    m = p.K_P * e + p.K_I * leading_output(x.h1, turns.h1, p.lead)
-    m += p.K_I5 * leading_output(x.h5, turns.h5, p.lead) + p.K_I7 * leading_output(x.h7, turns.h7, p.lead)
-    m += p.K_I11 * leading_output(x.h11, turns.h11, p.lead) + p.K_I13 * leading_output(x.h13, turns.h13, p.lead)
+    m = scaled(p.K_P, e) + scaled(p.K_I, leading_output(x.h1, turns.h1, p.lead))
+    m += scaled(p.K_I5, leading_output(x.h5, turns.h5, p.lead))
+    m += scaled(p.K_I7, leading_output(x.h7, turns.h7, p.lead))
+    m += scaled(p.K_I11, leading_output(x.h11, turns.h11, p.lead))
+    m += scaled(p.K_I13, leading_output(x.h13, turns.h13, p.lead))
     return after, m

@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.vectors import length
 
 
 class LvrtParams(NamedTuple):
@@ -38,8 +39,8 @@ def lvrt_step(u_pos: complex, u_neg: complex, p: LvrtParams) -> LvrtOrder:
 
     The disconnection of Fig. 5 for sags longer than the envelope is the plant's undervoltage relay.
     """
-    V_pos = abs(u_pos) / p.u_nom
-    V_neg = abs(u_neg) / p.u_nom
+    V_pos = length(u_pos) / p.u_nom
+    V_neg = length(u_neg) / p.u_nom
     if V_pos >= p.V_detect:
         return LvrtOrder(V_fault=V_pos, fault=False, P_limit=p.S_nom, Q_ref=0.0)
     S_fault = max(V_pos - V_neg, 0.0) * p.S_nom  # (8)

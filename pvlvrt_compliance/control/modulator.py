@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.vectors import length, scaled
 
 
 class ModulatorParams(NamedTuple):
@@ -17,6 +18,6 @@ class ModulatorParams(NamedTuple):
 def modulate(m: complex, u_g_ab: complex, v_dc: float, p: ModulatorParams) -> complex:
     """Modulating signal that is handed to the PWM: with feedforward, its length limited."""
     if p.feedforward != 0.0:
-        m = m + p.feedforward * u_g_ab / (p.K_PWM * max(v_dc, 1.0))
-    length = abs(m)
-    return m if length <= p.m_max else m * (p.m_max / length)
+        m = m + scaled(p.feedforward / (p.K_PWM * max(v_dc, 1.0)), u_g_ab)
+    size = length(m)
+    return m if size <= p.m_max else scaled(p.m_max / size, m)

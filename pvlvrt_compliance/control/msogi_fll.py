@@ -3,15 +3,17 @@
 import math
 from typing import NamedTuple
 
-from pvlvrt_compliance.control.sogi import (
+from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.sogi import (
     SogiState,
     Turns,
     at_rest,
     harmonic_turns,
     in_steady_state,
+    sequences,
     sogi_step,
 )
-from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.vectors import scaled
 
 
 class MsogiFllParams(NamedTuple):
@@ -51,12 +53,6 @@ def locked(u_pos: complex, w: float) -> MsogiFllState:
 
 
 @kernel
-def sequences(x: SogiState) -> tuple[complex, complex]:
-    """Positive and negative sequence from a signal and its quadrature (PNSC): (u' +- j qu')/2."""
-    return 0.5 * (x.u + 1j * x.qu), 0.5 * (x.u - 1j * x.qu)
-
-
-@kernel
 def fll_step(x: SogiState, e: complex, w: float, p: MsogiFllParams, T: float) -> float:
     """Advance the frequency-locked loop of Fig. 3(b) by one sample and keep it within its guards.
 
@@ -81,11 +77,11 @@ def msogi_fll_step(
     turns = harmonic_turns(x.w * T)
     u_pos, u_neg = sequences(x.h1)
     after = MsogiFllState(
-        h1=sogi_step(x.h1, p.K * e, turns.h1),
-        h5=sogi_step(x.h5, p.K / 5 * e, turns.h5),
-        h7=sogi_step(x.h7, p.K / 7 * e, turns.h7),
-        h11=sogi_step(x.h11, p.K / 11 * e, turns.h11),
-        h13=sogi_step(x.h13, p.K / 13 * e, turns.h13),
+        h1=sogi_step(x.h1, scaled(p.K, e), turns.h1),
+        h5=sogi_step(x.h5, scaled(p.K / 5, e), turns.h5),
+        h7=sogi_step(x.h7, scaled(p.K / 7, e), turns.h7),
+        h11=sogi_step(x.h11, scaled(p.K / 11, e), turns.h11),
+        h13=sogi_step(x.h13, scaled(p.K / 13, e), turns.h13),
         w=fll_step(x.h1, e, x.w, p, T),
     )
     return after, Synchronisation(u_pos=u_pos, u_neg=u_neg, w=x.w, turns=turns)

@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.vectors import length, scaled
 
 K_PWM = 2 / 3
 """Inverter gain of Table 2: u_inv = K_PWM v_DC m."""
@@ -23,14 +24,14 @@ class Bridge(NamedTuple):
 @kernel
 def limit_modulation(m: complex) -> complex:
     """Modulating signal within the linear range, its direction kept."""
-    length = abs(m)
-    return m if length <= M_MAX else m * (M_MAX / length)
+    size = length(m)
+    return m if size <= M_MAX else scaled(M_MAX / size, m)
 
 
 @kernel
 def modulated(m: complex, i: complex, v_dc: float) -> Bridge:
     """Bridge that follows the modulating signal: u_inv = 2/3 v_DC m, i_DC = Re(u_inv conj(i)) / v_DC."""
-    return Bridge(u=K_PWM * v_dc * m, i_dc=K_PWM * (m.real * i.real + m.imag * i.imag))
+    return Bridge(u=scaled(K_PWM * v_dc, m), i_dc=K_PWM * (m.real * i.real + m.imag * i.imag))
 
 
 @kernel
@@ -39,7 +40,7 @@ def freewheeling(i: complex, v_dc: float) -> Bridge:
 
     Holds while v_DC exceeds the peak of the line-to-line voltage; then no current can build up again.
     """
-    length = abs(i)
-    if length == 0.0:
+    size = length(i)
+    if size == 0.0:
         return Bridge(u=0j, i_dc=0.0)
-    return Bridge(u=-_K_DIODES * v_dc / length * i, i_dc=-_K_DIODES * length)
+    return Bridge(u=scaled(-_K_DIODES * v_dc / size, i), i_dc=-_K_DIODES * size)

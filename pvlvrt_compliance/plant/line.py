@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.vectors import scaled
 
 
 class LineParams(NamedTuple):
@@ -19,13 +20,13 @@ class LineParams(NamedTuple):
 @kernel
 def line_step(i: complex, u_inv: complex, e: complex, p: LineParams) -> complex:
     """Current after one plant step (A); voltages at the middle of the step (V)."""
-    return p.decay * i + p.gain * (u_inv - e)
+    return scaled(p.decay, i) + scaled(p.gain, u_inv - e)
 
 
 @kernel
 def pcc_voltage(i: complex, u_inv: complex, e: complex, p: LineParams) -> complex:
     """Voltage at the PCC (V): u_PCC = e + R_g i + L_g di/dt, with di/dt from the whole line."""
-    return p.k_u * u_inv + p.k_e * e + p.k_i * i
+    return scaled(p.k_u, u_inv) + scaled(p.k_e, e) + scaled(p.k_i, i)
 
 
 def design(L: float, R: float, L_g: float, R_g: float, T_S: float) -> LineParams:

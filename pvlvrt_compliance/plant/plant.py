@@ -3,25 +3,47 @@
 from typing import NamedTuple
 
 from pvlvrt_compliance.kernel import kernel
-from pvlvrt_compliance.plant.grid import GridParams, GridState, grid_at, grid_step, source_voltage, zero_sequence
+from pvlvrt_compliance.plant.grid import (
+    GridTable,
+    Source,
+    half_step_later,
+    source_at,
+    source_voltage,
+    step_later,
+    zero_sequence,
+)
 from pvlvrt_compliance.plant.inverter import Bridge, freewheeling, limit_modulation, modulated
 from pvlvrt_compliance.plant.line import LineParams, line_step, pcc_voltage
-from pvlvrt_compliance.plant.protection import NO_TRIP, ProtectionParams, RelayState, relays_step
+from pvlvrt_compliance.plant.protection import (
+    NO_TRIP,
+    ProtectionParams,
+    RelayState,
+    UndervoltageCurve,
+    relays_step,
+    undervoltage_limit,
+)
 from pvlvrt_compliance.plant.pv_array import PvParams, array_current, diode_voltage
+from pvlvrt_compliance.vectors import scaled
 
 
 class PlantParams(NamedTuple):
-    """Parameters by block, and the plant step."""
+    """Parameters by block, and the plant step. No arrays: they would be reference-counted in every step."""
 
     pv: PvParams
     line: LineParams
-    grid: GridParams
     protection: ProtectionParams
     C: float  # DC-link capacitance (F)
     G: float  # irradiance, in units of 1000 W/m2 (-)
     t_breaker: float  # after a trip the breaker parts by then, though current may still flow (s)
     T_S: float  # plant step (s)
     ratio: int  # plant steps in a control period (-)
+
+
+class PlantTables(NamedTuple):
+    """What is looked up in arrays, once a control period."""
+
+    grid: GridTable
+    undervoltage: UndervoltageCurve
 
 
 class PlantState(NamedTuple):
@@ -31,7 +53,6 @@ class PlantState(NamedTuple):
     v_dc: float  # DC-link voltage (V)
     x_pv: float  # junction voltage of a module (V)
     i_pv: float  # array current (A)
-    k_grid: int  # entry of the grid's breakpoints (-)
     relay: RelayState
     trip: int  # code of the trip (-)
     t_trip: float  # time since the trip (s)
@@ -67,39 +88,36 @@ def terminal_voltage(x: PlantState, i: complex, u_inv: complex, e: complex, p: P
 
 
 @kernel
-def observe(x: PlantState, m: complex, t: float, p: PlantParams) -> Observed:
-    """Voltages at the instant ``t`` (s) of a state, under the modulating signal that has led to it."""
-    grid = grid_at(t, x.k_grid, p.T_S, p.grid)
-    e = source_voltage(grid, p.grid)
+def observe(x: PlantState, m: complex, source: Source, p: PlantParams) -> Observed:
+    """Voltages at the instant of a state and its source, under the modulating signal that has led to it."""
+    e = source_voltage(source)
     u_inv = bridge(limit_modulation(m), x.i, x.v_dc, x.trip != NO_TRIP).u
-    return Observed(u_ab=terminal_voltage(x, x.i, u_inv, e, p), u0_ab=e, u_zero=zero_sequence(grid, p.grid))
+    return Observed(u_ab=terminal_voltage(x, x.i, u_inv, e, p), u0_ab=e, u_zero=zero_sequence(source))
 
 
 @kernel
-def plant_step(x: PlantState, m: complex, grid: GridState, p: PlantParams) -> PlantState:
-    """Advance by one plant step under a constant modulating signal; ``grid`` is at the middle of the step.
+def plant_step(x: PlantState, m: complex, e: complex, u_min: float, p: PlantParams) -> PlantState:
+    """Advance by one plant step under a constant modulating signal; ``e`` is the source (V) at the middle of the step.
 
     Second order: DC voltage and source are taken at the middle of the step, the line is solved exactly over it.
     """
     per_farad = p.T_S / p.C
     blocked = x.trip != NO_TRIP
     v_mid = max(x.v_dc + 0.5 * per_farad * (x.i_pv - bridge(m, x.i, x.v_dc, blocked).i_dc), 0.0)
-    e = source_voltage(grid, p.grid)
     u_inv = bridge(m, x.i, v_mid, blocked).u
     i = extinguish(line_step(x.i, u_inv, e, p.line), x.i, blocked) if x.closed else 0j
-    i_mid = 0.5 * (x.i + i)
+    i_mid = scaled(0.5, x.i + i)
     x_pv = diode_voltage(v_mid, p.G, x.x_pv, p.pv)
     i_pv = array_current(v_mid, x_pv, p.pv)
     v_dc = max(x.v_dc + per_farad * (i_pv - bridge(m, i_mid, v_mid, blocked).i_dc), 0.0)
     u_pcc = terminal_voltage(x, i_mid, u_inv, e, p)
-    relay, trip = relays_step(x.relay, u_pcc, i, v_dc, p.protection, p.T_S)
+    relay, trip = relays_step(x.relay, u_pcc, i, v_dc, u_min, p.protection, p.T_S)
     t_trip = x.t_trip + p.T_S if blocked else 0.0
     return PlantState(
         i=i,
         v_dc=v_dc,
         x_pv=x_pv,
         i_pv=i_pv,
-        k_grid=grid.k,
         relay=relay,
         trip=x.trip if blocked else trip,
         t_trip=t_trip,
@@ -108,11 +126,20 @@ def plant_step(x: PlantState, m: complex, grid: GridState, p: PlantParams) -> Pl
 
 
 @kernel
-def advance(x: PlantState, m: complex, t: float, p: PlantParams) -> PlantState:
-    """Advance from the instant ``t`` (s) by one control period, under the modulating signal given for it."""
+def advance(x: PlantState, m: complex, source: Source, t: float, p: PlantParams, tables: PlantTables) -> PlantState:
+    """Advance by one control period under the modulating signal given for it.
+
+    ``source`` is the grid at the beginning, the instant ``t`` (s). A breakpoint within the period takes effect in the
+    plant step whose middle it precedes.
+    """
     m = limit_modulation(m)
-    grid = grid_at(t + 0.5 * p.T_S, x.k_grid, p.T_S, p.grid)
+    u_min = undervoltage_limit(x.relay, p.protection, tables.undervoltage)
+    source = half_step_later(source)
     for n in range(p.ratio):
-        x = plant_step(x, m, grid, p)
-        grid = grid_step(grid, t + (n + 1.5) * p.T_S, p.T_S, p.grid)
+        t_mid = t + (n + 0.5) * p.T_S
+        if n > 0:
+            source = step_later(source)
+        if t_mid >= source.t_end:
+            source = source_at(t_mid, source.k, tables.grid)
+        x = plant_step(x, m, source_voltage(source), u_min, p)
     return x

@@ -15,7 +15,7 @@ STC_TEMPERATURE = 25.0
 """Cell temperature at standard test conditions (degrees C)."""
 
 # Beyond this change of the diode voltage (V) a further Newton step is needed: its error is the square of it over 2 a.
-_NEWTON_TOLERANCE = 1e-6
+_NEWTON_TOLERANCE = 1e-4
 _NEWTON_STEPS = 50
 
 
@@ -64,11 +64,11 @@ def diode_voltage(v: float, G: float, x: float, p: PvParams) -> float:
     0 = I_L G - I_0 (exp(x/a) - 1) - G_sh G x - (x - v_module)/R_s, with G in units of 1000 W/m2 (De Soto scaling).
     The left side is concave and falls, so Newton converges from any guess at or above the solution.
     """
-    v_module = v / p.n_series
+    per_a, G_s, G_sh = 1 / p.a, 1 / p.R_s, p.G_sh * G  # constant over a run: the compiler lifts them out of its loops
+    source = p.I_L * G + p.I_0 + v / p.n_series * G_s
     for _ in range(_NEWTON_STEPS):
-        diode = p.I_0 * math.exp(x / p.a)
-        f = p.I_L * G - diode + p.I_0 - p.G_sh * G * x - (x - v_module) / p.R_s
-        dx = f / (diode / p.a + p.G_sh * G + 1 / p.R_s)
+        diode = p.I_0 * math.exp(x * per_a)
+        dx = (source - diode - (G_sh + G_s) * x) / (diode * per_a + G_sh + G_s)
         x += dx
         if abs(dx) < _NEWTON_TOLERANCE:
             break

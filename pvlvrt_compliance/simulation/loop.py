@@ -14,7 +14,8 @@ from pvlvrt_compliance.control.controller import (
     controller_step,
 )
 from pvlvrt_compliance.kernel import cached_kernel, kernel
-from pvlvrt_compliance.plant.plant import Observed, PlantParams, PlantState, advance, observe
+from pvlvrt_compliance.plant.grid import source_at
+from pvlvrt_compliance.plant.plant import Observed, PlantParams, PlantState, PlantTables, advance, observe
 from pvlvrt_compliance.space_vectors import SQRT2_3, SQRT3_2
 
 COMPLETED, NOT_FINITE = range(2)
@@ -71,6 +72,7 @@ def run(
     m: complex,
     first: int,
     plant_params: PlantParams,
+    tables: PlantTables,
     controller_params: ControllerParams,
     samples: NDArray[np.float64],
 ) -> Outcome:
@@ -89,15 +91,18 @@ def run(
         Filled with the record.
     """
     T_reg = plant_params.ratio * plant_params.T_S
+    k_grid = 0
     for n in range(first, len(samples)):
         t = n * T_reg
-        y = observe(plant, m, t, plant_params)
+        source = source_at(t, k_grid, tables.grid)
+        k_grid = source.k
+        y = observe(plant, m, source, plant_params)
         sampled = Measured(u_g_ab=y.u_ab, i_ab=plant.i, v_dc=plant.v_dc, i_pv=plant.i_pv)
         controller, signals = controller_step(controller, sampled, controller_params)
         if not is_finite(plant, signals):
             return Outcome(status=NOT_FINITE, samples=max(n, 0), plant=plant)
         if n >= 0:
             record(samples[n], plant, y, signals, plant_params.G)
-        plant = advance(plant, m, t, plant_params)
+        plant = advance(plant, m, source, t, plant_params, tables)
         m = signals.m
     return Outcome(status=COMPLETED, samples=len(samples), plant=plant)

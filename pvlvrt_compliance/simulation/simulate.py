@@ -13,6 +13,7 @@ from pvlvrt_compliance.simulation.translate import (
     control_period_s,
     controller_params,
     plant_params,
+    plant_tables,
     pv_params,
     steady_state,
 )
@@ -37,12 +38,13 @@ def simulate(scenario: Scenario, parameters: Parameters, run=run) -> Waveforms: 
         When a number stops being finite, with the simulated time.
     """
     plant = plant_params(parameters, scenario)
+    tables = plant_tables(parameters, scenario)
     controller = controller_params(parameters, scenario)
     T_reg = control_period_s(parameters)
     settling = math.ceil(parameters.simulation.settling_s / T_reg)
     samples = np.empty((math.floor(scenario.end_s / T_reg) + 1, len(CHANNELS)))
-    start = steady_state(plant, controller, scenario, -settling * T_reg)
-    outcome = run(start.plant, start.controller, start.m, -settling, plant, controller, samples)
+    start = steady_state(plant, tables.grid, controller, scenario, -settling * T_reg)
+    outcome = run(start.plant, start.controller, start.m, -settling, plant, tables, controller, samples)
     if outcome.status != COMPLETED:
         raise SimulationError(f"a number stopped being finite at {outcome.samples * T_reg:.4f} s")
     columns = np.ascontiguousarray(samples.T)

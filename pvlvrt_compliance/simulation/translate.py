@@ -1,5 +1,6 @@
 """The one place where words with units become the symbols of the kernels, and where a run's first state is made."""
 
+import cmath
 import math
 from typing import NamedTuple
 
@@ -13,17 +14,18 @@ from pvlvrt_compliance.control.dc_voltage_regulator import DcVoltageRegulatorPar
 from pvlvrt_compliance.control.lvrt import LvrtParams
 from pvlvrt_compliance.control.modulator import ModulatorParams
 from pvlvrt_compliance.control.mppt import MpptParams
-from pvlvrt_compliance.control.sogi import in_steady_state, rotation
 from pvlvrt_compliance.kernel import plain
 from pvlvrt_compliance.plant import line, pv_array
-from pvlvrt_compliance.plant.grid import GridParams
+from pvlvrt_compliance.plant.grid import GridTable
 from pvlvrt_compliance.plant.inverter import K_PWM, M_MAX
-from pvlvrt_compliance.plant.plant import PlantParams, PlantState
-from pvlvrt_compliance.plant.protection import NO_TRIP, ProtectionParams, relays_at_rest
+from pvlvrt_compliance.plant.plant import PlantParams, PlantState, PlantTables
+from pvlvrt_compliance.plant.protection import NO_TRIP, ProtectionParams, UndervoltageCurve, relays_at_rest
 from pvlvrt_compliance.plant.pv_array import STC_IRRADIANCE, PvParams
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.sogi import in_steady_state
 from pvlvrt_compliance.units import Nominal
+from pvlvrt_compliance.vectors import rotation
 
 _SQRT3_2 = math.sqrt(1.5)  # length of a power-invariant space vector per unit of phase amplitude
 _FREQUENCY_BAND_HZ = 5.0  # default setting of the frequency relay around nominal
@@ -52,12 +54,17 @@ def pv_params(parameters: Parameters, scenario: Scenario) -> PvParams:
     return pv_array.fit(pv_array.STP320_24_VE, scenario.cell_temperature_c, p.modules_in_series, p.strings_in_parallel)
 
 
+def plant_step_s(parameters: Parameters) -> float:
+    """T_S (s)."""
+    return 1e-6 * parameters.simulation.plant_step_us
+
+
 def control_period_s(parameters: Parameters) -> float:
     """T_reg (s)."""
-    return parameters.simulation.control_ratio * parameters.simulation.plant_step_us * 1e-6
+    return parameters.simulation.control_ratio * plant_step_s(parameters)
 
 
-def grid_params(scenario: Scenario, nominal: Nominal) -> GridParams:
+def grid_table(scenario: Scenario, nominal: Nominal, T_S: float) -> GridTable:
     """Source that sags by the scenario: healthy, sagged from its start, healthy from its clearing."""
     w = 2 * math.pi * scenario.frequency_hz
     pos, neg, zero = scenario.sag.sequences_pu()
@@ -65,10 +72,11 @@ def grid_params(scenario: Scenario, nominal: Nominal) -> GridParams:
     t = np.array([-1e6, start, clear])
     peak = nominal.phase_voltage_peak_v
     angle = math.radians(scenario.point_on_wave_deg)
-    return GridParams(
+    return GridTable(
         t=t,
         theta=np.remainder(angle + w * (t - start), 2 * math.pi),
         w=np.full(3, w),
+        half_rate=np.full(3, cmath.exp(0.5j * w * T_S)),
         u_pos=_SQRT3_2 * peak * np.array([1, pos, 1], dtype=np.complex128),
         # A negative-sequence phasor turns backwards as a space vector: its angle changes sign.
         u_neg=_SQRT3_2 * peak * np.array([0, neg.conjugate(), 0], dtype=np.complex128),
@@ -86,14 +94,13 @@ def protection_params(parameters: Parameters, nominal: Nominal) -> ProtectionPar
         i_max=p.overcurrent_pu * nominal.phase_current_peak_a,
         v_dc_max=p.dc_overvoltage_v,
         u_nom=nominal.voltage_ab_v,
-        curve_t=np.array([t for t, _ in p.undervoltage_curve]),
-        curve_u=np.array([u for _, u in p.undervoltage_curve]),
+        u_low=p.undervoltage_curve[-1][1],
         curve_delay=p.undervoltage_delay_s,
         w_nom=w_nom,
         w_min=2 * math.pi * low,
         w_max=2 * math.pi * high,
         t_frequency=p.frequency_delay_s,
-        turn=plain(rotation)(w_nom * parameters.simulation.plant_step_us * 1e-6),
+        turn=plain(rotation)(w_nom * plant_step_s(parameters)),
     )
 
 
@@ -101,20 +108,28 @@ def plant_params(parameters: Parameters, scenario: Scenario) -> PlantParams:
     """Parameters of the plant in one scenario."""
     p = parameters.plant
     nominal = nominal_of(parameters, scenario)
-    T_S = 1e-6 * parameters.simulation.plant_step_us
+    T_S = plant_step_s(parameters)
     Z = nominal.impedance_ohm / scenario.scr if scenario.scr is not None else 0.0
     R_g = Z / math.hypot(1, scenario.xr)
     L_g = R_g * scenario.xr / (2 * math.pi * nominal.frequency_hz)
     return PlantParams(
         pv=pv_params(parameters, scenario),
         line=line.design(p.filter_inductance_h, p.filter_resistance_ohm, L_g, R_g, T_S),
-        grid=grid_params(scenario, nominal),
         protection=protection_params(parameters, nominal),
         C=p.dc_link_capacitance_f,
         G=scenario.irradiance_w_m2 / STC_IRRADIANCE,
         t_breaker=p.breaker_opening_s,
         T_S=T_S,
         ratio=parameters.simulation.control_ratio,
+    )
+
+
+def plant_tables(parameters: Parameters, scenario: Scenario) -> PlantTables:
+    """What the plant looks up: the grid's events and the undervoltage curve."""
+    curve = np.array(parameters.protection.undervoltage_curve, dtype=np.float64)
+    return PlantTables(
+        grid=grid_table(scenario, nominal_of(parameters, scenario), plant_step_s(parameters)),
+        undervoltage=UndervoltageCurve(t=curve[:, 0].copy(), u=curve[:, 1].copy()),
     )
 
 
@@ -156,7 +171,9 @@ def controller_params(parameters: Parameters, scenario: Scenario) -> ControllerP
     )
 
 
-def steady_state(plant: PlantParams, controller: ControllerParams, scenario: Scenario, t: float) -> Start:
+def steady_state(
+    plant: PlantParams, grid: GridTable, controller: ControllerParams, scenario: Scenario, t: float
+) -> Start:
     """Normal operation at the instant ``t`` (s): the maximum-power point, or S_nom right of it.
 
     The regulators' resonators start where the inverter balances the grid voltage; what is left of the transient
@@ -166,8 +183,8 @@ def steady_state(plant: PlantParams, controller: ControllerParams, scenario: Sce
     P = min(best.p, controller.lvrt.S_nom)
     v_dc = max(pv_array.voltage_at_power(P, scenario.irradiance_w_m2, plant.pv), controller.mppt.v_min)
     v_ref = min(max(best.v, controller.mppt.v_min), controller.mppt.v_max)
-    w = float(plant.grid.w[0])
-    theta = float(plant.grid.theta[0] + w * (t - plant.grid.t[0]))
+    w = float(grid.w[0])
+    theta = float(grid.theta[0] + w * (t - grid.t[0]))
     u = controller.lvrt.u_nom * complex(math.cos(theta), math.sin(theta))
     i = P / abs(u) ** 2 * u
     m = u / (K_PWM * v_dc)
@@ -181,7 +198,6 @@ def steady_state(plant: PlantParams, controller: ControllerParams, scenario: Sce
             v_dc=v_dc,
             x_pv=v_dc / plant.pv.n_series + plant.pv.R_s * i_pv / plant.pv.n_parallel,
             i_pv=i_pv,
-            k_grid=0,
             relay=relays_at_rest(u, w),
             trip=NO_TRIP,
             t_trip=0.0,

@@ -1,9 +1,9 @@
 """Second-order generalised integrator: the resonant cell of the MSOGI-FLL, of the PR regulators and of the relay."""
 
-import math
 from typing import NamedTuple
 
 from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.vectors import Rotation, ahead, rotate_on, rotation, scaled
 
 
 class SogiState(NamedTuple):
@@ -11,13 +11,6 @@ class SogiState(NamedTuple):
 
     u: complex  # in-phase output, unit of the input
     qu: complex  # quadrature output, 90 degrees behind, unit of the input
-
-
-class Rotation(NamedTuple):
-    """Turn of a resonator in one sample."""
-
-    c: float  # cosine of w T
-    s: float  # sine of w T
 
 
 class Turns(NamedTuple):
@@ -41,15 +34,10 @@ def in_steady_state(u: complex) -> SogiState:
 
 
 @kernel
-def rotation(angle: float) -> Rotation:
-    """Turn by an angle (rad)."""
-    return Rotation(c=math.cos(angle), s=math.sin(angle))
-
-
-@kernel
-def rotate_on(r: Rotation, by: Rotation) -> Rotation:
-    """Turn by the sum of two angles: multiples of an angle without further sines."""
-    return Rotation(c=r.c * by.c - r.s * by.s, s=r.s * by.c + r.c * by.s)
+def sequences(x: SogiState) -> tuple[complex, complex]:
+    """Positive and negative sequence from a signal and its quadrature (PNSC): (u' +- j qu')/2."""
+    j_qu = ahead(x.qu)
+    return scaled(0.5, x.u + j_qu), scaled(0.5, x.u - j_qu)
 
 
 @kernel
@@ -74,4 +62,7 @@ def sogi_step(x: SogiState, forcing: complex, turn: Rotation) -> SogiState:
     Discretised by exact rotation about (0, g), so that the undamped pair stays on the unit circle at any step.
     """
     q = x.qu - forcing
-    return SogiState(u=turn.c * x.u - turn.s * q, qu=forcing + turn.s * x.u + turn.c * q)
+    return SogiState(
+        u=scaled(turn.c, x.u) - scaled(turn.s, q),
+        qu=forcing + scaled(turn.s, x.u) + scaled(turn.c, q),
+    )

@@ -1,0 +1,182 @@
+"""Fourier components over one cycle and over whole cycles, where a cycle is no whole number of samples.
+
+The functions of this folder are the definition of what is measured. All windows are causal: a value at a sample is made
+from that sample and earlier ones, so a response never appears before its cause.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pvlvrt_compliance.errors import MeasurementError
+from pvlvrt_compliance.waveforms.container import Samples
+
+ComplexSamples = NDArray[np.complex128]
+
+# A cycle that misses a whole number of samples by less than this, in samples, is taken to be whole.
+_ROUND_OFF = 1e-9
+
+
+class WholeCycles(NamedTuple):
+    """The whole cycles at the beginning of a window.
+
+    Attributes
+    ----------
+    samples : int
+        Number of samples in them.
+    length : float
+        Their length in sampling steps, no whole number in general.
+    """
+
+    samples: int
+    length: float
+
+    @property
+    def weights(self) -> Samples:
+        """Quadrature weights of the mean over the cycles, shape (samples,), sum 1.
+
+        Trapezoids between the samples; the last one reaches from the last sample to the end of the cycles, where a
+        periodic signal has its first value again. The fraction of a step thus counts as much as it lasts.
+        """
+        weights = np.full(self.samples, 1 / self.length)
+        closing = self.length - (self.samples - 1)
+        weights[[0, -1]] = 0.5 * (1 + closing) / self.length
+        return weights
+
+
+def turning(n: int, dt_s: float, frequency_hz: float) -> ComplexSamples:
+    """Return exp(-j 2 pi f t) at n samples, t = 0 at the first one; shape (n,)."""
+    turned: ComplexSamples = np.exp(-2j * np.pi * frequency_hz * dt_s * np.arange(n))
+    return turned
+
+
+def one_cycle_phasor(x: NDArray[Any], dt_s: float, frequency_hz: float, order: int = 1) -> ComplexSamples:
+    """Fourier component of the cycle that ends at each sample.
+
+    X(t) = (2/T) integral of x exp(-j order w tau) over tau = t - T .. t, tau = 0 at sample 0: A cos(w t + phi) gives
+    A exp(j phi) at every sample. This is the one-cycle window that IEC 61400-21 practice takes phasors with.
+
+    Parameters
+    ----------
+    x : array, shape (..., n)
+        Samples, finite.
+    dt_s, frequency_hz : float
+        Sampling step (s); frequency of the fundamental (Hz).
+    order : int
+        Harmonic order, 1 or more.
+
+    Returns
+    -------
+    array, shape (..., n)
+        Phasors in the unit of x, peak values; nan + j nan during the first cycle and one sample.
+    """
+    return 2 * _one_cycle_average(x * turning(x.shape[-1], dt_s, order * frequency_hz), 1 / (frequency_hz * dt_s))
+
+
+def one_cycle_mean(x: Samples, dt_s: float, frequency_hz: float) -> Samples:
+    """Mean of the cycle that ends at each sample, shape (..., n), NaN during the first cycle and one sample."""
+    mean: Samples = _one_cycle_average(x, 1 / (frequency_hz * dt_s))
+    return mean
+
+
+def _one_cycle_average(y: NDArray[Any], cycle: float) -> NDArray[Any]:
+    # By trapezoids the integral of a sinusoid is exact but for one factor, the same at all samples, so its difference
+    # over a cycle vanishes where it should. The value one cycle ago falls between samples: a cubic through four.
+    integral = np.cumsum(y, axis=-1) - 0.5 * (y + y[..., :1])
+    back = math.ceil(cycle - _ROUND_OFF)
+    if back < 2:
+        raise MeasurementError("fewer than two samples a cycle")
+    average = np.full(y.shape, np.nan * (1 + 1j) if np.iscomplexobj(y) else np.nan)
+    count = y.shape[-1] - back - 1
+    if count > 0:
+        nodes = enumerate(_cubic_weights(max(back - cycle, 0.0)))
+        past = sum(weight * integral[..., node : node + count] for node, weight in nodes)
+        average[..., back + 1 :] = (integral[..., back + 1 :] - past) / cycle
+    return average
+
+
+def _cubic_weights(f: float) -> tuple[float, float, float, float]:
+    """Lagrange weights of the nodes -1, 0, 1, 2 for a point between 0 and 1."""
+    return (
+        -f * (f - 1) * (f - 2) / 6,
+        (f + 1) * (f - 1) * (f - 2) / 2,
+        -(f + 1) * f * (f - 2) / 2,
+        (f + 1) * f * (f - 1) / 6,
+    )
+
+
+def whole_cycles(n: int, dt_s: float, frequency_hz: float) -> WholeCycles:
+    """Return the whole cycles that n samples hold, each sample standing for the step that follows it.
+
+    A window cut at whole cycles has one sample more or fewer by where the grid falls; one that is missing counts as
+    there, for the cycles close on themselves.
+
+    Raises
+    ------
+    MeasurementError
+        When the samples do not hold one cycle.
+    """
+    cycle = 1 / (frequency_hz * dt_s)
+    cycles = math.floor((n + 1) / cycle + _ROUND_OFF)
+    if cycles < 1:
+        raise MeasurementError(f"a window of {n * dt_s:.4f} s is shorter than one cycle of {frequency_hz:g} Hz")
+    length = cycles * cycle
+    return WholeCycles(min(n, math.ceil(length - _ROUND_OFF)), length)
+
+
+def components(x: Samples, dt_s: float, frequency_hz: float, order: int = 1, detrend: bool = False) -> ComplexSamples:
+    """Fourier components over the whole cycles at the beginning of a window.
+
+    Parameters
+    ----------
+    x : array, shape (..., n)
+        Samples.
+    dt_s, frequency_hz : float
+        Sampling step (s); frequency that the whole cycles are counted of (Hz).
+    order : int
+        The component at ``order * frequency_hz``.
+    detrend : bool
+        Subtract the least-squares straight line of those cycles first.
+
+    Returns
+    -------
+    array, shape (...)
+        Phasors in the unit of x, peak values, angle at the first sample.
+
+    Raises
+    ------
+    MeasurementError
+        When the window does not hold one cycle.
+    """
+    cycles = whole_cycles(x.shape[-1], dt_s, frequency_hz)
+    x = x[..., : cycles.samples]
+    kernel = cycles.weights * turning(cycles.samples, dt_s, order * frequency_hz)
+    found: ComplexSamples = 2 * np.asarray((_without_line(x) if detrend else x) @ kernel)
+    return found
+
+
+def component(x: Samples, dt_s: float, frequency_hz: float, detrend: bool = False, order: int = 1) -> complex:
+    """Fourier component of one signal, shape (n,): see `components`."""
+    return complex(components(x, dt_s, frequency_hz, order, detrend))
+
+
+def mean(x: Samples, dt_s: float, frequency_hz: float) -> float:
+    """Mean over the whole cycles at the beginning of a window, in the unit of x, shape (n,).
+
+    Raises
+    ------
+    MeasurementError
+        When the window does not hold one cycle.
+    """
+    cycles = whole_cycles(len(x), dt_s, frequency_hz)
+    return float(x[: cycles.samples] @ cycles.weights)
+
+
+def _without_line(x: Samples) -> Samples:
+    t = np.arange(x.shape[-1]) - 0.5 * (x.shape[-1] - 1)
+    level = x.mean(axis=-1, keepdims=True)
+    slope = ((x - level) @ t)[..., np.newaxis] / (t @ t)
+    detrended: Samples = x - level - slope * t
+    return detrended

@@ -1,0 +1,86 @@
+"""Fundamental frequency from the turning of the positive-sequence phasor."""
+
+import math
+
+import numpy as np
+
+from pvlvrt_compliance.errors import MeasurementError
+from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_phasor
+from pvlvrt_compliance.space_vectors import SQRT2_3, clarke
+from pvlvrt_compliance.waveforms.container import Segment, Waveforms
+
+AMPLITUDE_FLOOR = 1.0
+"""Positive-sequence amplitude (V or A, peak) below which no frequency is measured."""
+
+_SETTLED_HZ = 1e-6
+_ITERATIONS = 20
+_ANGLES_A_CYCLE = 16
+_LONGEST_S = 0.5
+
+
+def fundamental_frequency(
+    segment: Segment, nominal_hz: float, kind: str = "u", floor: float = AMPLITUDE_FLOOR
+) -> float:
+    """Frequency (Hz) of the positive sequence, mean over a segment.
+
+    The one-cycle phasor of the positive sequence stands still when the frequency assumed is the true one; its turning
+    corrects the assumption until it does. Exact for a steady periodic record with unbalance and harmonics.
+
+    Parameters
+    ----------
+    segment : Segment
+        One and a half cycles at least.
+    nominal_hz : float
+        Where the search starts (Hz); the result lies within half of it on either side.
+    kind : str
+        ``u``, ``u0`` or ``i``.
+    floor : float
+        Least amplitude of the positive sequence (V or A, peak).
+
+    Raises
+    ------
+    MeasurementError
+        When there is no voltage (or current), too short a segment, a missing channel or no frequency to settle on.
+    """
+    vector = clarke(*segment.three_phase(kind))
+    frequency_hz = nominal_hz
+    for _ in range(_ITERATIONS):
+        # SQRT2_3 / 2 of the space vector's own phasor is Fortescue's positive sequence of the three phases' phasors.
+        positive = SQRT2_3 / 2 * one_cycle_phasor(vector, segment.dt_s, frequency_hz)
+        correction_hz = _turning_hz(positive, segment.dt_s, 1 / (frequency_hz * segment.dt_s), floor)
+        frequency_hz += correction_hz
+        if not abs(frequency_hz - nominal_hz) <= 0.5 * nominal_hz:
+            break
+        if abs(correction_hz) < _SETTLED_HZ:
+            return frequency_hz
+    raise MeasurementError(f"no steady frequency near {nominal_hz:g} Hz")
+
+
+def _turning_hz(phasor: ComplexSamples, dt_s: float, cycle: float, floor: float) -> float:
+    valid = phasor[math.ceil(cycle) + 1 :]
+    if len(valid) < 0.45 * cycle:
+        raise MeasurementError("the record is too short to measure its frequency: under one and a half cycles")
+    stride = max(int(cycle / _ANGLES_A_CYCLE), 1)
+    valid = valid[::stride]
+    if not np.abs(valid).min() >= floor:
+        raise MeasurementError("no voltage or current to measure the frequency of")
+    angle = np.unwrap(np.angle(valid))
+    k = np.arange(len(angle)) - 0.5 * (len(angle) - 1)
+    return float((angle @ k) / (k @ k) / (2 * np.pi * stride * dt_s))
+
+
+def frequency_before(waveforms: Waveforms, start_s: float, nominal_hz: float, floor: float = AMPLITUDE_FLOOR) -> float:
+    """Frequency (Hz) of the voltages just before an instant: what windows and Fourier components of a record go by.
+
+    From the last half second, or what the record has of it at one sampling step.
+
+    Raises
+    ------
+    MeasurementError
+        When the record before ``start_s`` has no voltage, or is shorter than one and a half cycles.
+    """
+    for segment in reversed(waveforms.segments):
+        piece = segment.slice(start_s - _LONGEST_S, start_s)
+        if len(piece) * piece.dt_s * nominal_hz >= 2:
+            return fundamental_frequency(piece, nominal_hz, floor=floor)
+    raise MeasurementError(f"the record before {start_s:.3f} s is too short to measure its frequency")

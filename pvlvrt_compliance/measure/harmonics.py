@@ -1,0 +1,93 @@
+"""Harmonics and total harmonic distortion over whole cycles."""
+
+import math
+
+import numpy as np
+
+from pvlvrt_compliance.measure.fourier import ComplexSamples, turning, whole_cycles
+from pvlvrt_compliance.waveforms.container import Samples
+
+FUNDAMENTAL_FLOOR = 1e-3
+"""Amplitude, in the unit of the signal, below which a distortion in percent of the fundamental means nothing."""
+
+
+def harmonic_amplitudes(x: Samples, dt_s: float, frequency_hz: float, highest: int = 40) -> Samples:
+    """Amplitudes of the mean and the harmonics over the whole cycles at the beginning of a window.
+
+    Least squares on all orders up to ``highest`` at once, hence exact for a periodic signal although its cycle is no
+    whole number of samples. Orders that the sampling cannot carry (half the samples a cycle and above) are 0.
+
+    Parameters
+    ----------
+    x : array, shape (..., n)
+        Samples.
+    dt_s, frequency_hz : float
+        Sampling step (s); frequency of the fundamental (Hz).
+    highest : int
+        Highest order.
+
+    Returns
+    -------
+    array, shape (..., highest + 1)
+        Amplitudes (peak) by order in the unit of x; order 0 is the magnitude of the mean.
+
+    Raises
+    ------
+    MeasurementError
+        When the window does not hold one cycle.
+    """
+    n = whole_cycles(x.shape[-1], dt_s, frequency_hz).samples
+    carried = min(highest, (n - 1) // 2, math.ceil(0.5 / (frequency_hz * dt_s)) - 1)
+    projections = _projections(x[..., :n], turning(n, dt_s, frequency_hz), carried)
+    both_signs = np.concatenate([projections[:0:-1].conj(), projections])
+    found = np.linalg.solve(_gram(n, 2 * np.pi * frequency_hz * dt_s, carried), both_signs.reshape(2 * carried + 1, -1))
+    amplitudes = np.zeros((highest + 1, *x.shape[:-1]))
+    amplitudes[: carried + 1] = 2 * np.abs(found[carried:]).reshape(carried + 1, *x.shape[:-1])
+    amplitudes[0] /= 2
+    return np.moveaxis(amplitudes, 0, -1)
+
+
+def _projections(x: Samples, turned: ComplexSamples, highest: int) -> ComplexSamples:
+    """Sum of x exp(-j h theta k) over the samples k, for h = 0 .. highest; shape (highest + 1, ...)."""
+    power = np.ones_like(turned)
+    sums = np.empty((highest + 1, *x.shape[:-1]), dtype=np.complex128)
+    for h in range(highest + 1):
+        sums[h] = x @ power
+        power *= turned
+    return sums
+
+
+def _gram(n: int, theta: float, highest: int) -> ComplexSamples:
+    """Inner products of exp(j h theta k), k = 0 .. n - 1, for h = -highest .. highest: geometric sums."""
+    m = np.arange(-2 * highest, 2 * highest + 1)
+    half = 0.5 * theta * m
+    half[2 * highest] = 1.0
+    ratio = np.sin(n * half) / np.sin(half)
+    ratio[2 * highest] = n
+    sums = ratio * np.exp(0.5j * (n - 1) * theta * m)
+    orders = np.arange(2 * highest + 1)
+    gram: ComplexSamples = sums[2 * highest + orders[np.newaxis, :] - orders[:, np.newaxis]]
+    return gram
+
+
+def thd_percent(
+    x: Samples, dt_s: float, frequency_hz: float, highest: int = 40, floor: float = FUNDAMENTAL_FLOOR
+) -> float | None:
+    """Total harmonic distortion of orders 2 to ``highest``, in percent of the fundamental.
+
+    Parameters as `harmonic_amplitudes`, with x of shape (n,). None where the amplitude of the fundamental is below
+    ``floor`` (in the unit of x).
+
+    Raises
+    ------
+    MeasurementError
+        When the window does not hold one cycle.
+    """
+    return distortion_percent(harmonic_amplitudes(x, dt_s, frequency_hz, highest), floor)
+
+
+def distortion_percent(amplitudes: Samples, floor: float = FUNDAMENTAL_FLOOR) -> float | None:
+    """Root of the sum of squares of orders 2 and up, in percent of order 1; None below the floor. Shape (orders,)."""
+    if amplitudes[1] < floor:
+        return None
+    return float(100 * np.sqrt(np.sum(amplitudes[2:] ** 2)) / amplitudes[1])

@@ -1,0 +1,54 @@
+"""Sequence phasors and phase amplitudes of three-phase quantities, one-cycle."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_phasor
+from pvlvrt_compliance.space_vectors import fortescue
+from pvlvrt_compliance.waveforms.container import Samples, Segment
+
+
+class SequencePhasors(NamedTuple):
+    """Symmetrical components at each sample, shape (n,), peak values in the unit of the signal."""
+
+    positive: ComplexSamples
+    negative: ComplexSamples
+    zero: ComplexSamples
+
+
+def sequence_phasors(segment: Segment, kind: str, frequency_hz: float) -> SequencePhasors:
+    """Positive, negative and zero sequence of the cycle that ends at each sample (Fortescue).
+
+    Parameters
+    ----------
+    segment : Segment
+        Uniformly sampled record.
+    kind : str
+        ``u`` or ``u0`` (V) or ``i`` (A).
+    frequency_hz : float
+        Frequency of the fundamental (Hz).
+
+    Returns
+    -------
+    SequencePhasors
+        Phasors as `one_cycle_phasor` gives them: NaN at first, angles referenced to the segment's first sample.
+
+    Raises
+    ------
+    MeasurementError
+        When a channel is missing.
+    """
+    return SequencePhasors(*fortescue(*_phase_phasors(segment, kind, frequency_hz)))
+
+
+def phase_amplitudes(segment: Segment, kind: str, frequency_hz: float) -> Samples:
+    """Amplitude of the fundamental of each phase over the cycle that ends at each sample, shape (3, n).
+
+    Parameters and errors as `sequence_phasors`.
+    """
+    return np.abs(_phase_phasors(segment, kind, frequency_hz))
+
+
+def _phase_phasors(segment: Segment, kind: str, frequency_hz: float) -> ComplexSamples:
+    return one_cycle_phasor(np.stack(segment.three_phase(kind)), segment.dt_s, frequency_hz)

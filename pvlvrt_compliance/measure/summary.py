@@ -1,0 +1,167 @@
+"""The standard measurements of one record, as `results.json` carries them."""
+
+import math
+
+import numpy as np
+
+from pvlvrt_compliance.errors import MeasurementError
+from pvlvrt_compliance.measure.fourier import component, components, mean
+from pvlvrt_compliance.measure.frequency import frequency_before, fundamental_frequency
+from pvlvrt_compliance.measure.harmonics import distortion_percent, harmonic_amplitudes
+from pvlvrt_compliance.measure.power import instantaneous_power
+from pvlvrt_compliance.measure.quantities import ControllerBeliefs, Measurements, WindowMeasurements
+from pvlvrt_compliance.measure.windows import STANDARD_RULES, Span, WindowRules, standard_windows
+from pvlvrt_compliance.space_vectors import fortescue
+from pvlvrt_compliance.units import Nominal
+from pvlvrt_compliance.waveforms.container import Segment, Waveforms
+
+THD_FLOOR_PU = 1e-3
+"""Fundamental current (pu) below which no distortion is stated."""
+
+VOLTAGE_FLOOR_PU = 5e-3
+"""Positive-sequence voltage (pu) below which no frequency is stated."""
+
+Quantities = dict[str, float | tuple[float, ...] | None]
+
+
+def measure(
+    waveforms: Waveforms, nominal: Nominal, start_s: float, clear_s: float, rules: WindowRules = STANDARD_RULES
+) -> Measurements:
+    """Measure a record in the windows before, during and after its sag.
+
+    The frequency that windows and Fourier components go by is the one measured before the sag; the nominal one where
+    there is no voltage to measure it on. A window that the record does not hold, or that crosses a change of the
+    sampling step, is left out (`Waveforms.window` raises with the reason for whoever needs it); a quantity whose
+    channels are missing or not finite is None.
+
+    Parameters
+    ----------
+    waveforms : Waveforms
+        The record.
+    nominal : Nominal
+        Base of the per-unit values.
+    start_s, clear_s : float
+        Start and clearing of the sag (s).
+    rules : WindowRules
+        Where the windows lie.
+    """
+    frequency_hz = _record_frequency(waveforms, nominal, start_s)
+    # The last sample stands for the step that follows it.
+    end_s = waveforms.end_s + waveforms.segments[-1].dt_s
+    windows = standard_windows(start_s, clear_s, end_s, frequency_hz, rules, record_start_s=waveforms.t0_s)
+    peak_spans = (windows.before, Span(start_s, clear_s), Span(clear_s, end_s))
+    measured = {
+        name: _measure_window(waveforms, nominal, frequency_hz, span, peak_span)
+        for name, span, peak_span in zip(windows._fields, windows, peak_spans, strict=True)
+        if span is not None and peak_span is not None
+    }
+    controller = None if windows.during is None else _controller(waveforms, frequency_hz, windows.during)
+    return Measurements(**measured, controller=controller)
+
+
+def _record_frequency(waveforms: Waveforms, nominal: Nominal, start_s: float) -> float:
+    floor = VOLTAGE_FLOOR_PU * nominal.phase_voltage_peak_v
+    try:
+        return frequency_before(waveforms, start_s, nominal.frequency_hz, floor)
+    except MeasurementError:
+        return nominal.frequency_hz
+
+
+def _measure_window(
+    waveforms: Waveforms, nominal: Nominal, frequency_hz: float, span: Span, peak_span: Span
+) -> WindowMeasurements | None:
+    try:
+        segment = waveforms.window(*span)
+        quantities = _voltages(segment, nominal, frequency_hz) | _currents(segment, nominal, frequency_hz)
+        quantities |= _powers(segment, frequency_hz) | _dc_voltage(segment, frequency_hz)
+    except MeasurementError:
+        return None
+    quantities["current_peak_pu"] = _current_peak(waveforms, nominal, peak_span)
+    finite = {name: value for name, value in quantities.items() if _is_finite(value)}
+    return WindowMeasurements.model_validate({"start_s": span.start_s, "end_s": span.end_s} | finite)
+
+
+def _is_finite(value: float | tuple[float, ...] | None) -> bool:
+    return value is not None and all(math.isfinite(v) for v in (value if isinstance(value, tuple) else (value,)))
+
+
+def _has(segment: Segment, *kinds: str) -> bool:
+    """Whether a record has the three phases of each kind (a recording may lack some)."""
+    names = [f"{kind}_{phase}_{'a' if kind == 'i' else 'v'}" for kind in kinds for phase in "abc"]
+    return all(name in segment.channels for name in names)
+
+
+def _voltages(segment: Segment, nominal: Nominal, frequency_hz: float) -> Quantities:
+    if not _has(segment, "u"):
+        return {}
+    phasors = components(np.stack(segment.three_phase("u")), segment.dt_s, frequency_hz)
+    positive, negative, _ = fortescue(*phasors)
+    return {
+        "voltage_positive_pu": abs(positive) / nominal.phase_voltage_peak_v,
+        "voltage_negative_pu": abs(negative) / nominal.phase_voltage_peak_v,
+        "frequency_hz": _window_frequency(segment, nominal, frequency_hz),
+    }
+
+
+def _window_frequency(segment: Segment, nominal: Nominal, frequency_hz: float) -> float | None:
+    try:
+        return fundamental_frequency(segment, frequency_hz, floor=VOLTAGE_FLOOR_PU * nominal.phase_voltage_peak_v)
+    except MeasurementError:
+        return None
+
+
+def _currents(segment: Segment, nominal: Nominal, frequency_hz: float) -> Quantities:
+    if not _has(segment, "i"):
+        return {}
+    amplitudes = harmonic_amplitudes(np.stack(segment.three_phase("i")), segment.dt_s, frequency_hz)
+    floor = THD_FLOOR_PU * nominal.phase_current_peak_a
+    # numpy's maximum keeps a NaN, which Python's max may lose: the worst of what is not known is not known.
+    distortions = [d for phase in amplitudes if (d := distortion_percent(phase, floor)) is not None]
+    return {
+        "current_phase_pu": tuple(float(a) / nominal.phase_current_peak_a for a in amplitudes[:, 1]),
+        "current_thd_percent": float(np.max(distortions)) if distortions else None,
+    }
+
+
+def _current_peak(waveforms: Waveforms, nominal: Nominal, span: Span) -> float | None:
+    pieces = [segment.slice(*span) for segment in waveforms]
+    peaks = [np.abs(x).max() for piece in pieces if len(piece) and _has(piece, "i") for x in piece.three_phase("i")]
+    return float(np.max(peaks)) / nominal.phase_current_peak_a if peaks else None
+
+
+def _powers(segment: Segment, frequency_hz: float) -> Quantities:
+    if not _has(segment, "u", "i"):
+        return {}
+    p, q = instantaneous_power(segment)
+    return {
+        "active_power_kw": mean(p, segment.dt_s, frequency_hz) / 1e3,
+        "reactive_power_kvar": mean(q, segment.dt_s, frequency_hz) / 1e3,
+        "active_power_2f_kw": abs(component(p, segment.dt_s, frequency_hz, order=2)) / 1e3,
+    }
+
+
+def _dc_voltage(segment: Segment, frequency_hz: float) -> Quantities:
+    if "v_dc_v" not in segment.channels:
+        return {}
+    v_dc = segment["v_dc_v"]
+    level = mean(v_dc, segment.dt_s, frequency_hz)
+    ripple = abs(component(v_dc, segment.dt_s, frequency_hz, detrend=True, order=2))
+    return {"dc_voltage_mean_v": level, "dc_voltage_2f_percent": 100 * ripple / level if level > 0 else None}
+
+
+def _controller(waveforms: Waveforms, frequency_hz: float, during: Span) -> ControllerBeliefs | None:
+    try:
+        segment = waveforms.window(*during)
+    except MeasurementError:
+        return None
+
+    def believed(channel: str, unit: float) -> float | None:
+        if channel not in segment.channels:
+            return None
+        value = mean(segment[channel], segment.dt_s, frequency_hz) / unit
+        return value if math.isfinite(value) else None
+
+    beliefs = ControllerBeliefs(
+        v_fault_pu=believed("v_fault_pu", 1), q_ref_kvar=believed("q_ref_var", 1e3), p_ref_kw=believed("p_ref_w", 1e3)
+    )
+    return None if beliefs == ControllerBeliefs() else beliefs

@@ -1,0 +1,122 @@
+"""Records made by hand: voltages, currents and v_DC of a sag, each level chosen by the test."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pvlvrt_compliance.checks.evaluate import evaluate
+from pvlvrt_compliance.checks.results import Check, TestResult
+from pvlvrt_compliance.profile import Profile, TestCase, load_profile
+from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.units import Nominal
+from pvlvrt_compliance.waveforms.container import Segment, Waveforms
+
+DT_S = 40.9568e-6
+
+
+@dataclass
+class Bench:
+    """A record to be judged; by default a flawless inverter's through the sag of the test.
+
+    Currents are balanced; the powers asked for come out as means at the terminals. Times count from the start of the
+    sag, ``recovers_after_s`` and the argument of ``p_after_kw`` from clearing.
+    """
+
+    profile: Profile
+    test: TestCase
+    available_power_w: float = 500e3
+    p_before_kw: float = 500.0
+    p_sag_kw: float = 0.0
+    q_sag_kvar: float = 0.0
+    p_after_kw: float | Callable[[np.ndarray], np.ndarray] = 500.0
+    recovers_after_s: float = 0.0
+    sag: Sag | None = None
+    no_load_sag: Sag | None = None
+    dc_ripple_percent: float = 0.0
+    disconnected_after_s: float | None = None
+    blocked_after_s: float | None = None
+    extra_current_pu: Callable[[np.ndarray], np.ndarray] | None = None
+    without: tuple[str, ...] = ()
+    spoiled: dict[str, float] = field(default_factory=dict)
+    nominal: Nominal = Nominal()
+
+    def waveforms(self) -> Waveforms:
+        """Sample the record at the control step."""
+        scenario = self.test.scenario
+        t = DT_S * np.arange(int(scenario.end_s / DT_S))
+        in_sag = (t >= scenario.start_s) & (t < scenario.clear_s)
+        turning = np.exp(2j * np.pi * scenario.frequency_hz * (t - scenario.start_s))
+        u0 = self._voltage(self.no_load_sag or self.sag or scenario.sag, in_sag)
+        u = self._voltage(self.sag or scenario.sag, in_sag)
+        i = self._current(t, u, in_sag)
+        channels = {f"u_{p}_v": (x * turning).real for p, x in zip("abc", u, strict=True)}
+        channels |= {f"u0_{p}_v": (x * turning).real for p, x in zip("abc", u0, strict=True)}
+        feeding = self._feeding(t)
+        channels |= {f"i_{p}_a": (x * turning).real * feeding for p, x in zip("abc", i, strict=True)}
+        if self.extra_current_pu is not None:
+            for p, x in zip("abc", self.extra_current_pu(t), strict=True):
+                channels[f"i_{p}_a"] += x * self.nominal.phase_current_peak_a
+        ripple = self.dc_ripple_percent / 100 * (turning**2).imag
+        channels["v_dc_v"] = (900.0 + 20 * (t - scenario.start_s)) * (1 + in_sag * ripple)
+        opened_s = np.inf if self.disconnected_after_s is None else scenario.start_s + self.disconnected_after_s
+        channels["connected"] = (t < opened_s).astype(float)
+        for name, at_s in self.spoiled.items():
+            channels[name][np.searchsorted(t, at_s)] = np.nan
+        return Waveforms((Segment(0.0, DT_S, {n: x for n, x in channels.items() if n not in self.without}),))
+
+    def result(self) -> TestResult:
+        """Judge the record."""
+        return evaluate(self.profile, self.test, self.waveforms(), self.nominal, self.available_power_w)
+
+    def check(self, kind: str) -> Check:
+        """Judge the record and pick one verdict."""
+        return next(check for check in self.result().checks if check.check == kind)
+
+    def _voltage(self, sag: Sag, in_sag: np.ndarray) -> list[np.ndarray]:
+        healthy = Sag(depth=0).phasors_pu()
+        peak = self.nominal.phase_voltage_peak_v
+        return [peak * np.where(in_sag, s, h) for s, h in zip(sag.phasors_pu(), healthy, strict=True)]
+
+    def _current(self, t: np.ndarray, u: list[np.ndarray], in_sag: np.ndarray) -> list[np.ndarray]:
+        """Balanced positive-sequence phasors that carry the powers asked for: i = (2/3) conj(S / u+) a phase."""
+        scenario = self.test.scenario
+        rotation = np.exp(2j * np.pi / 3)
+        positive = (u[0] + rotation * u[1] + rotation.conjugate() * u[2]) / 3
+        after = self.p_after_kw(t - scenario.clear_s) if callable(self.p_after_kw) else self.p_after_kw
+        p = np.where(t < scenario.start_s, self.p_before_kw, after)
+        p = np.where(in_sag, self.p_sag_kw, p)
+        p = np.where((t >= scenario.clear_s) & (t < scenario.clear_s + self.recovers_after_s), 0.0, p)
+        power = 1e3 * (p + 1j * np.where(in_sag, self.q_sag_kvar, 0.0))
+        current = 2 / 3 * np.conj(power / positive)
+        return [current, current * rotation.conjugate(), current * rotation]
+
+    def _feeding(self, t: np.ndarray) -> np.ndarray:
+        stops = [s for s in (self.disconnected_after_s, self.blocked_after_s) if s is not None]
+        return (t < self.test.scenario.start_s + min(stops, default=np.inf)).astype(float)
+
+
+@pytest.fixture(scope="session")
+def iec() -> Profile:
+    """The shipped profile with an envelope."""
+    return load_profile("iec61400-21")
+
+
+@pytest.fixture(scope="session")
+def spain() -> Profile:
+    """The shipped profile without an envelope."""
+    return load_profile("spain-q-curve")
+
+
+@pytest.fixture
+def bench(iec: Profile) -> Callable[..., Bench]:
+    """Make a record of a sag of all phases (``depth``) that a profile judges; further arguments are `Bench`'s."""
+
+    def make(depth: float = 0.5, duration_s: float | None = 0.3, profile: Profile = iec, **settings: Any) -> Bench:
+        scenario = settings.pop("scenario", {})
+        sag = settings.pop("asked", None) or Sag(depth=depth)
+        return Bench(profile, profile.ad_hoc_test(sag, duration_s, **scenario), **settings)
+
+    return make

@@ -1,0 +1,123 @@
+import base64
+import json
+
+import numpy as np
+import pytest
+
+from pvlvrt_compliance.report import figure
+from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.waveforms.container import Segment, Waveforms
+
+ENVELOPE = ((0.0, 0.0), (0.15, 0.0), (1.5, 0.85))
+
+
+@pytest.fixture(scope="module")
+def drawn(make_test, make_figure):
+    return make_figure(make_test())
+
+
+def _points(trace):
+    y = np.frombuffer(base64.b64decode(trace["y"]["bdata"]), trace["y"]["dtype"])
+    return trace["x0"] + trace["dx"] * np.arange(len(y)), y
+
+
+def _named(drawn, name):
+    return next(trace for trace in drawn["data"] if trace["name"] == name)
+
+
+def test_all_panels_share_one_time_axis(drawn):
+    """Zoom in one panel is zoom in all; every panel has its own values and legend, and none overlaps another."""
+    assert {trace["xaxis"] for trace in drawn["data"]} == {"x"}
+    axes = sorted({trace["yaxis"] for trace in drawn["data"]})
+    assert axes == ["y", "y2", "y3", "y4", "y5"]
+    domains = sorted(drawn["layout"][name.replace("y", "yaxis")]["domain"] for name in axes)
+    assert all(below[1] < above[0] for below, above in zip(domains, domains[1:], strict=False))
+    assert domains[0][0] == 0
+    assert domains[-1][1] == 1
+
+
+def test_voltages_are_those_of_the_sag(drawn, scenario):
+    """Phase c, 90 %: V+ is 0.7 and V- 0.3 during the sag, 1 and 0 before, one cycle late and not early."""
+    for name, before, during in (("V<sup>+</sup>", 1.0, 0.7), ("V<sup>−</sup>", 0.0, 0.3)):
+        t, y = _points(_named(drawn, name))
+        assert t[0] >= 0.019
+        assert y[t < scenario.start_s] == pytest.approx(before, abs=2e-3)
+        assert y[(t > scenario.start_s + 0.022) & (t < scenario.clear_s)] == pytest.approx(during, abs=2e-3)
+
+
+def test_powers_are_in_kilo(drawn):
+    """0.98 pu of current at 1 pu of voltage is 490 kW and no reactive power."""
+    for name, expected in (("P", 490), ("Q", 0)):
+        t, y = _points(_named(drawn, name))
+        assert y[t < 0.29] == pytest.approx(expected, abs=0.5)
+
+
+def test_limits_are_drawn(drawn, scenario, make_test):
+    """The envelope starts with the sag and holds its last value; the limit of Q spans the window it is judged in."""
+    envelope = _named(drawn, "ride-through envelope")
+    assert envelope["x"][:3] == pytest.approx([scenario.start_s + t for t, _ in ENVELOPE])
+    assert envelope["y"][:3] == [u for _, u in ENVELOPE]
+    demanded = _named(drawn, "Q demanded")
+    during = make_test().measurements.during
+    assert demanded["x"] == [during.start_s, during.end_s]
+    assert demanded["y"] == [160.7, 160.7]
+    assert set(_named(drawn, "limit, peak")["y"]) == {2.0, None, -2.0}
+
+
+def test_sag_and_window_are_marked(drawn, scenario, make_test):
+    """Start and clearing are lines through all panels; the sag and the window `during` are shaded."""
+    shapes = drawn["layout"]["shapes"]
+    assert [s["x0"] for s in shapes if s["type"] == "line"] == pytest.approx([scenario.start_s, scenario.clear_s])
+    spans = [(s["x0"], s["x1"]) for s in shapes if s["type"] == "rect"]
+    during = make_test().measurements.during
+    assert spans == [pytest.approx((scenario.start_s, scenario.clear_s)), (during.start_s, during.end_s)]
+
+
+def test_opening_of_the_breaker_is_marked(make_record, make_test, scenario, nominal):
+    """The instant at which `connected` falls has its own line and words."""
+    drawn = figure.test_figure(make_record(scenario, opens_s=0.4), make_test(), nominal)
+    assert any("breaker opens 0.400 s" in note["text"] for note in drawn["layout"]["annotations"])
+    lines = [s["x0"] for s in drawn["layout"]["shapes"] if s["type"] == "line"]
+    assert lines[-1] == pytest.approx(0.4, abs=1e-4)
+
+
+def test_it_is_small_plain_json(drawn):
+    """27 figures fit into one report: under 200 kB each, and no number that JSON does not know."""
+    assert len(json.dumps(drawn, allow_nan=False)) < 200_000
+
+
+def test_missing_channels_leave_their_panel_out(record, make_test, nominal):
+    """A recording of voltages alone is drawn without currents, powers and DC voltage."""
+    only = {name: x for name, x in record.segments[0].channels.items() if name.startswith("u_")}
+    segment = record.segments[0]
+    drawn = figure.test_figure(Waveforms((Segment(segment.t0_s, segment.dt_s, only),)), make_test(), nominal, ENVELOPE)
+    titles = [note["text"] for note in drawn["layout"]["annotations"] if note["text"].startswith("<b>")]
+    assert titles == ["<b>Phase-to-neutral voltages</b>", "<b>Sequence voltages, one cycle</b>"]
+
+
+def test_a_record_of_nothing_known_is_an_empty_figure(make_test, nominal):
+    """Without one known channel there is nothing to draw, and no error."""
+    drawn = figure.test_figure(Waveforms((Segment(0.0, 1e-3, {"x": np.zeros(10)}),)), make_test(), nominal)
+    assert drawn["data"] == []
+
+
+def test_segments_are_drawn_on_their_own_steps(record, make_test, nominal):
+    """A record that goes on with a longer step is one curve in the legend, in two pieces that meet."""
+    fine = record.segments[0]
+    cut = fine.slice(0.0, 1.0)
+    rest = fine.slice(1.0, 2.0)
+    thin = Segment(rest.t0_s, 4 * rest.dt_s, {name: x[::4] for name, x in rest.channels.items()})
+    drawn = figure.test_figure(Waveforms((cut, thin)), make_test(), nominal)
+    pieces = [trace for trace in drawn["data"] if trace["name"] == "v<sub>DC</sub>"]
+    assert [piece["showlegend"] for piece in pieces] == [True, False]
+    assert 0 < pieces[1]["x0"] - _points(pieces[0])[0][-1] < 5e-3
+
+
+def test_no_sag_is_drawn_without_marks(make_record, make_test, nominal):
+    """A run without a sag has neither band nor envelope."""
+    scenario = Scenario(sag=Sag(depth=0), duration_s=0.3)
+    test = make_test(scenario=scenario.model_dump(mode="json"))
+    drawn = figure.test_figure(make_record(scenario), test, nominal, ENVELOPE)
+    assert not [s for s in drawn["layout"]["shapes"] if s["type"] == "line"]
+    assert "ride-through envelope" not in {trace["name"] for trace in drawn["data"]}
