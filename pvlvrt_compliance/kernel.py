@@ -57,12 +57,13 @@ def cached_kernel(function: F) -> F:
     The global interpreter lock is released while it runs.
     """
     # numba reads the folder when the function is decorated; other users of numba in this process keep theirs.
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(cache_folder())
+    config: Any = numba.config
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(cache_folder())
     try:
         compiled: F = numba.njit(function, cache=True, nogil=True)
     except RuntimeError:  # no writable folder anywhere: compile every time rather than not at all
         compiled = numba.njit(function, nogil=True)
     finally:
-        numba.config.CACHE_DIR = before
+        config.CACHE_DIR = before
     return compiled

@@ -69,14 +69,12 @@ def exceeds(i: complex, i_max: float) -> bool:
 def undervoltage_limit(x: RelayState, p: ProtectionParams, curve: UndervoltageCurve) -> float:
     """Positive-sequence voltage (pu) below which the relay trips now: the curve as of ``curve_delay`` ago."""
     t = x.t_low - p.curve_delay
-    n = len(curve.t)
-    if t <= curve.t[0]:
-        return curve.u[0]
-    for k in range(1, n):
+    level: float = curve.u[len(curve.u) - 1]
+    for k in range(len(curve.t) - 1, 0, -1):
         if t < curve.t[k]:
-            share = (t - curve.t[k - 1]) / (curve.t[k] - curve.t[k - 1])
-            return curve.u[k - 1] + share * (curve.u[k] - curve.u[k - 1])
-    return curve.u[n - 1]
+            share = max((t - curve.t[k - 1]) / (curve.t[k] - curve.t[k - 1]), 0.0)
+            level = curve.u[k - 1] + share * (curve.u[k] - curve.u[k - 1])
+    return level
 
 
 @kernel

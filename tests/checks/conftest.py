@@ -41,14 +41,15 @@ class Bench:
     extra_current_pu: Callable[[np.ndarray], np.ndarray] | None = None
     without: tuple[str, ...] = ()
     spoiled: dict[str, float] = field(default_factory=dict)
-    nominal: Nominal = Nominal()
+    nominal: Nominal = field(default_factory=Nominal)
 
     def waveforms(self) -> Waveforms:
         """Sample the record at the control step."""
         scenario = self.test.scenario
         t = DT_S * np.arange(int(scenario.end_s / DT_S))
         in_sag = (t >= scenario.start_s) & (t < scenario.clear_s)
-        turning = np.exp(2j * np.pi * scenario.frequency_hz * (t - scenario.start_s))
+        angle = 2 * np.pi * scenario.frequency_hz * (t - scenario.start_s) + np.radians(scenario.point_on_wave_deg)
+        turning = np.exp(1j * angle)
         u0 = self._voltage(self.no_load_sag or self.sag or scenario.sag, in_sag)
         u = self._voltage(self.sag or scenario.sag, in_sag)
         i = self._current(t, u, in_sag)
@@ -90,7 +91,8 @@ class Bench:
         p = np.where(in_sag, self.p_sag_kw, p)
         p = np.where((t >= scenario.clear_s) & (t < scenario.clear_s + self.recovers_after_s), 0.0, p)
         power = 1e3 * (p + 1j * np.where(in_sag, self.q_sag_kvar, 0.0))
-        current = 2 / 3 * np.conj(power / positive)
+        dead = np.abs(positive) < 1e-6
+        current = np.where(dead, 0, 2 / 3 * np.conj(power / np.where(dead, 1, positive)))
         return [current, current * rotation.conjugate(), current * rotation]
 
     def _feeding(self, t: np.ndarray) -> np.ndarray:

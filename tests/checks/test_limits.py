@@ -6,6 +6,7 @@ import pytest
 from pvlvrt_compliance.checks.reactive_support import demanded_pu
 from pvlvrt_compliance.checks.results import Status
 from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.units import Nominal
 
 TWO_PHASE_TO_20 = Sag(depth=0.8, phases="bc", two_phase=True)
 PHASE_C_90 = Sag(depth=0.9, phases="c")
@@ -69,26 +70,27 @@ def test_instantaneous_peak(bench, peak_pu, status, phase, at_s):
 
 
 @pytest.mark.parametrize(
-    ("asked", "demand_kvar", "v_positive"),
+    ("asked", "demand"),
     [
-        (Sag(depth=0.5), 250, 0.5),  # clipped: eq (9) asks for 375
-        (Sag(depth=0.8), 100, 0.2),  # clipped
-        (Sag(depth=0.4), 500 * 15 / 7 * 0.25, 0.6),  # eq (9), below the 300 of the clip
-        (PHASE_C_90, 160.714, 0.7),
-        (TWO_PHASE_TO_20, 100, 0.6),  # clipped by V-: eq (9) asks for 268
-        (Sag(depth=0.151), 500 * 15 / 7 * 0.001, 0.849),
+        (Sag(depth=0.5), (250, 0.5)),  # clipped: eq (9) asks for 375
+        (Sag(depth=0.8), (100, 0.2)),  # clipped
+        (Sag(depth=0.4), (500 * 15 / 7 * 0.25, 0.6)),  # eq (9), below the 300 of the clip
+        (PHASE_C_90, (500 * 15 / 7 * 0.15, 0.7)),
+        (TWO_PHASE_TO_20, (100, 0.6)),  # clipped by V-: eq (9) asks for 268
+        (Sag(depth=0.151), (500 * 15 / 7 * 0.001, 0.849)),
     ],
 )
 @pytest.mark.parametrize(("beyond_kvar", "status"), [(0.05, Status.PASS), (-0.05, Status.FAIL)])
-def test_reactive_support(bench, asked, demand_kvar, v_positive, beyond_kvar, status):
+def test_reactive_support(bench, asked, demand, beyond_kvar, status):
     """Mean Q must reach the smaller of eq (9) and (V+ - V-) S, less 0.025 V+ S."""
+    demand_kvar, v_positive = demand
     tolerance = 0.025 * v_positive * 500
     check = bench(asked=asked, q_sag_kvar=demand_kvar - tolerance + beyond_kvar).check("reactive_support")
     assert check.status is status
     assert check.limit == pytest.approx(demand_kvar, abs=1e-2)
     assert check.margin == pytest.approx(beyond_kvar, abs=2e-2)
     assert check.unit == "kvar"
-    assert f"tolerance is {tolerance:.1f} kvar" in check.message
+    assert f"demanded at V+ = {v_positive:.3f} pu; the tolerance is" in check.message
 
 
 def test_more_support_is_no_failure(bench):
@@ -108,15 +110,7 @@ def test_no_support_above_the_threshold(bench, q_kvar, status, sign):
 
 def test_support_without_any_voltage(bench):
     """Where nothing of the voltage is left nothing is demanded, and rounding does not decide."""
-    made = bench(depth=0.5, sag=Sag(depth=1), no_load_sag=Sag(depth=0.5), q_sag_kvar=0)
-    with np.errstate(all="ignore"):
-        record = made.waveforms()
-    segment = record.segments[0]
-    in_sag = (segment.t_s >= 0.3) & (segment.t_s < 0.6)
-    for phase in "abc":
-        segment[f"i_{phase}_a"][in_sag] = 0
-    made.waveforms = lambda: record
-    check = made.check("reactive_support")
+    check = bench(depth=1, duration_s=0.2).check("reactive_support")
     assert (check.status, check.margin) == (Status.PASS, 0)
 
 
@@ -151,8 +145,6 @@ def test_sag_too_short_for_a_window(bench, kind):
 
 def test_at_60_hz(bench):
     """The same limits hold at 60 Hz, measured over cycles of 60 Hz."""
-    from pvlvrt_compliance.units import Nominal  # noqa: PLC0415
-
     nominal = Nominal(frequency_hz=60)
     made = bench(scenario={"frequency_hz": 60}, nominal=nominal, q_sag_kvar=250, dc_ripple_percent=0.14)
     result = made.result()

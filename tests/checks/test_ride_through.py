@@ -12,7 +12,7 @@ ENVELOPE_90_S = 0.15 + 0.1 / 0.85 * 1.35
 
 @pytest.mark.parametrize(("late_s", "status"), [(0.975, Status.PASS), (0.985, Status.FAIL)])
 def test_recovery_within_a_second_of_clearing(bench, late_s, status):
-    """P that is back at 95 % within 1 s of clearing passes, later it fails; a one-cycle mean takes 19 ms to get there."""
+    """P back at 95 % within 1 s of clearing passes, later it fails; a one-cycle mean takes 19 ms to rise."""
     check = bench(recovers_after_s=late_s, q_sag_kvar=250).check("ride_through")
     assert check.status is status
     assert check.measured == pytest.approx(late_s + SHARE * 0.02, abs=1e-4)
@@ -64,7 +64,7 @@ def test_sag_cleared_on_the_envelope_is_within_it(bench, asked, demanded_s, angl
     check = made.check("ride_through")
     assert check.status is Status.PASS
     assert check.unit == "s"
-    assert "back at 95%" in check.message
+    assert "back at 95 %" in check.message
     late = bench(asked=asked, duration_s=None, p_sag_kw=5.0, disconnected_after_s=demanded_s - 1e-3)
     assert late.check("ride_through").status is Status.FAIL
 

@@ -1,0 +1,133 @@
+"""One record against one profile: every requirement becomes a verdict, whatever the record is like."""
+
+from pvlvrt_compliance.checks.evidence import Evidence, NotApplicable
+from pvlvrt_compliance.checks.registry import find_judge
+from pvlvrt_compliance.checks.results import Check, ProfileSummary, Status, TestResult, worst
+from pvlvrt_compliance.checks.ride_through import KIND as RIDE_THROUGH
+from pvlvrt_compliance.checks.validity import reason_not_to_count
+from pvlvrt_compliance.checks.verdicts import unjudged
+from pvlvrt_compliance.errors import MeasurementError
+from pvlvrt_compliance.measure.quantities import Measurements
+from pvlvrt_compliance.measure.summary import measure
+from pvlvrt_compliance.measure.windows import STANDARD_RULES, WindowRules
+from pvlvrt_compliance.profile.procedure import TestCase
+from pvlvrt_compliance.profile.profile import Profile
+from pvlvrt_compliance.profile.requirements import Requirement
+from pvlvrt_compliance.units import Nominal
+from pvlvrt_compliance.waveforms.container import Waveforms
+
+
+def evaluate(
+    profile: Profile, test: TestCase, waveforms: Waveforms, nominal: Nominal, available_power_w: float
+) -> TestResult:
+    """Judge one record by every requirement of a profile.
+
+    Parameters
+    ----------
+    profile : Profile
+        What is demanded.
+    test : TestCase
+        What was applied; its scenario's times count from the start of the record.
+    waveforms : Waveforms
+        The record, simulated or measured.
+    nominal : Nominal
+        Base of the per-unit values.
+    available_power_w : float
+        What the PV array could give before the sag (W).
+
+    Returns
+    -------
+    TestResult
+        A verdict on each requirement; what cannot be measured is `not_evaluated` with the reason, nothing is raised.
+    """
+    evidence = collect(profile, test, waveforms, nominal, available_power_w)
+    checks = _judge_all(profile, evidence)
+    return _result(profile, test, checks, evidence.measurements, waveforms.end_s - waveforms.t0_s)
+
+
+def errored(profile: Profile, test: TestCase, reason: str) -> TestResult:
+    """Result of a test that gave no waveforms to judge: every requirement is an `error` with the reason."""
+    checks = [unjudged(kind, requirement, Status.ERROR, reason) for kind, requirement in profile.requirements.by_kind()]
+    return _result(profile, test, checks, Measurements(), 0.0)
+
+
+def summarise(profile: Profile) -> ProfileSummary:
+    """The profile as a report shows it, with what is not verified."""
+    return ProfileSummary(id=profile.id, title=profile.title, digest=profile.digest, notes=profile.unverified())
+
+
+def collect(
+    profile: Profile, test: TestCase, waveforms: Waveforms, nominal: Nominal, available_power_w: float
+) -> Evidence:
+    """Measure a record and put it together with what is known about its test; parameters as `evaluate`."""
+    rules = window_rules(profile)
+    scenario = test.scenario
+    return Evidence(
+        waveforms=waveforms,
+        nominal=nominal,
+        scenario=scenario,
+        available_power_w=available_power_w,
+        measurements=measure(waveforms, nominal, scenario.start_s, scenario.clear_s, rules),
+        rules=rules,
+        blocked_below_pu=profile.conditions.blocked_below_pu.value,
+    )
+
+
+def window_rules(profile: Profile) -> WindowRules:
+    """The profile's measurement windows, or the standard ones."""
+    if profile.windows is None:
+        return STANDARD_RULES
+    return WindowRules(**{name: number.value for name, number in profile.windows})
+
+
+def _judge_all(profile: Profile, evidence: Evidence) -> list[Check]:
+    demands = list(profile.requirements.by_kind())
+    try:
+        reason = reason_not_to_count(profile.conditions, evidence)
+    except MeasurementError as error:
+        reason = str(error)
+    if reason is not None:
+        return [unjudged(kind, requirement, Status.NOT_EVALUATED, reason) for kind, requirement in demands]
+    return [_judge(kind, requirement, evidence) for kind, requirement in demands]
+
+
+def _judge(kind: str, requirement: Requirement, evidence: Evidence) -> Check:
+    judge = find_judge(kind)
+    if judge is None:
+        reason = f"no installed package has a check for the requirement {kind!r}"
+        return unjudged(kind, requirement, Status.NOT_EVALUATED, reason)
+    try:
+        if kind != RIDE_THROUGH and (stop := _stop(evidence)) is not None:
+            return unjudged(kind, requirement, Status.NOT_APPLICABLE, stop)
+        return judge(requirement, evidence)
+    except NotApplicable as reason:
+        return unjudged(kind, requirement, Status.NOT_APPLICABLE, str(reason))
+    except MeasurementError as error:
+        return unjudged(kind, requirement, Status.NOT_EVALUATED, str(error))
+
+
+def _stop(evidence: Evidence) -> str | None:
+    """How the inverter stopped feeding for good, None when it did not; what stopped is judged by ride-through alone."""
+    start_s = evidence.scenario.start_s
+    if evidence.is_switched and evidence.disconnected_at_s is not None:
+        return f"tripped {evidence.disconnected_at_s - start_s:.3f} s after the start"
+    if evidence.blocked_at_s is not None:
+        return f"bridge blocked {evidence.blocked_at_s - start_s:.3f} s after the start"
+    return None
+
+
+def _result(
+    profile: Profile, test: TestCase, checks: list[Check], measurements: Measurements, duration_s: float
+) -> TestResult:
+    return TestResult(
+        id=test.id,
+        profile=profile.id,
+        title=test.title,
+        scenario=test.scenario.model_dump(mode="json"),
+        status=worst(check.status for check in checks),
+        checks=tuple(checks),
+        measurements=measurements,
+        clause=test.clause,
+        confidence=test.confidence,
+        duration_s=duration_s,
+    )

@@ -1,0 +1,62 @@
+"""Verdicts made in one way, so that each carries its clause and the weakest mark it rests on."""
+
+from collections.abc import Iterable
+
+from pvlvrt_compliance.checks.results import Check, Status
+from pvlvrt_compliance.profile.provenance import Marked, weakest
+from pvlvrt_compliance.profile.requirements import Requirement
+
+
+def judged(
+    kind: str,
+    requirement: Requirement,
+    status: Status,
+    message: str,
+    *,
+    measured: float,
+    limit: float,
+    margin: float,
+    unit: str,
+    at_s: float,
+    rests_on: Iterable[Marked],
+    clause: str = "",
+) -> Check:
+    """Verdict on a measured value.
+
+    Parameters
+    ----------
+    kind : str
+        Name of the check.
+    requirement : Requirement
+        What was demanded; gives the clause unless ``clause`` does.
+    measured, limit, margin : float
+        In ``unit``; the margin is the distance to failing, negative when failed.
+    at_s : float
+        The worst instant, from the start of the record (s).
+    rests_on : iterable of Marked
+        The numbers that decided; the weakest of their marks is the verdict's.
+    """
+    return Check(
+        check=kind,
+        status=status,
+        measured=float(measured),
+        limit=float(limit),
+        margin=float(margin),
+        unit=unit,
+        at_s=float(at_s),
+        clause=clause or requirement.clause,
+        confidence=weakest(number.confidence for number in rests_on),
+        message=message,
+    )
+
+
+def unjudged(kind: str, requirement: Requirement, status: Status, reason: str) -> Check:
+    """Verdict without a measured value: not applicable, not evaluated, or an error."""
+    return Check(
+        check=kind, status=status, clause=requirement.clause, confidence=requirement.confidence, message=reason
+    )
+
+
+def pass_or_fail(passed: bool) -> Status:
+    """Verdict of a comparison."""
+    return Status.PASS if passed else Status.FAIL

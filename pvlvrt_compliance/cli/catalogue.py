@@ -1,0 +1,33 @@
+"""`--list`: the selected tests as a table."""
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from pvlvrt_compliance.cli.request import Request, prepare
+
+
+def show_tests(request: Request) -> int:
+    """Print the selected tests; nothing is simulated."""
+    job = prepare(request)
+    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=0)
+    for heading in ("test", "sag"):
+        table.add_column(heading, no_wrap=True)
+    for heading in ("s", "W/m2", "deg", "Hz"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    table.add_column("confidence", no_wrap=True)
+    for test in job.tests:
+        scenario = test.scenario
+        table.add_row(
+            test.id,
+            scenario.sag.describe(),
+            f"{scenario.duration_s:.3f}",
+            f"{scenario.irradiance_w_m2:g}",
+            f"{scenario.point_on_wave_deg:g}",
+            f"{scenario.frequency_hz:g}",
+            test.confidence,
+        )
+    console = Console()
+    console.print(table)
+    console.print(f"{len(job.tests)} test{'' if len(job.tests) == 1 else 's'} of {job.profile.id}", highlight=False)
+    return 0

@@ -1,0 +1,155 @@
+"""The main command: judge an inverter's controller against a profile."""
+
+import sys
+from typing import Annotated
+
+import typer
+
+from pvlvrt_compliance.errors import UsageError
+
+_SAG, _SETTING, _OUTPUT = "One sag of your own", "Grid, weather, parameters", "Selection and output"
+
+_HELP = """
+Judge a PV inverter's controller against a grid code.
+
+Simulates the profile's tests, or the one sag given with --sag, on the bundled 500 kVA inverter, checks the
+waveforms and writes report.html, junit.xml, results.json and the waveforms.
+
+Example: [bold]pvlvrt-check --profile iec61400-21 --sag 90%[/bold]
+
+Exit status: 0 all passed, 1 a check failed, 2 wrong usage or profile, 3 something could not be simulated or evaluated,
+130 interrupted.
+"""
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from pvlvrt_compliance import __version__
+
+        print(f"pvlvrt-check {__version__}")
+        raise typer.Exit
+
+
+def check(
+    context: typer.Context,
+    profile: Annotated[
+        str, typer.Option("--profile", metavar="NAME|FILE", help="Grid code: a shipped name, or a TOML file.")
+    ] = "",
+    sag: Annotated[
+        str, typer.Option(metavar="DEPTH", help="Depth of the sag, 90% or 0.9; 0% is none.", rich_help_panel=_SAG)
+    ] = "",
+    phases: Annotated[
+        str,
+        typer.Option(
+            metavar="PHASES", help="Sagging phases: abc, a, b, c, ab, bc or ca. Default abc.", rich_help_panel=_SAG
+        ),
+    ] = "",
+    two_phase: Annotated[
+        bool,
+        typer.Option(
+            "--two-phase",
+            help="Isolated two-phase sag: the line-to-line voltage of the pair sags (--two-phase ca; default bc).",
+            rich_help_panel=_SAG,
+        ),
+    ] = False,
+    duration: Annotated[
+        str,
+        typer.Option(
+            metavar="TIME", help="500ms or 0.5s. Default: as long as the profile demands.", rich_help_panel=_SAG
+        ),
+    ] = "",
+    point_on_wave: Annotated[
+        float | None,
+        typer.Option(
+            metavar="DEG", help="Angle of phase a at the start; 0, its maximum, is the default.", rich_help_panel=_SAG
+        ),
+    ] = None,
+    irradiance: Annotated[
+        float | None, typer.Option(metavar="W/M2", help="Irradiance. Default 1000.", rich_help_panel=_SAG)
+    ] = None,
+    frequency: Annotated[
+        float | None, typer.Option(metavar="HZ", help="Grid frequency. Default 50.", rich_help_panel=_SETTING)
+    ] = None,
+    temperature: Annotated[
+        float | None, typer.Option(metavar="C", help="Cell temperature. Default 25.", rich_help_panel=_SETTING)
+    ] = None,
+    scr: Annotated[
+        float | None,
+        typer.Option(
+            "--scr", metavar="RATIO", help="Short-circuit ratio. Default: a stiff grid.", rich_help_panel=_SETTING
+        ),
+    ] = None,
+    xr: Annotated[
+        float | None,
+        typer.Option("--xr", metavar="RATIO", help="X/R of the grid. Default 10.", rich_help_panel=_SETTING),
+    ] = None,
+    assignments: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="NAME=VALUE",
+            help="A parameter, repeatable: --set controller.pr_integral_gain=0.2",
+            rich_help_panel=_SETTING,
+        ),
+    ] = None,
+    tests: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--test", metavar="PATTERN", help="Tests to run, repeatable: --test 'VD3*'", rich_help_panel=_OUTPUT
+        ),
+    ] = None,
+    list_only: Annotated[
+        bool, typer.Option("--list", help="Show the selected tests and stop.", rich_help_panel=_OUTPUT)
+    ] = False,
+    output: Annotated[
+        str, typer.Option(metavar="FOLDER", help="Where reports go.", rich_help_panel=_OUTPUT)
+    ] = "pvlvrt-report",
+    csv: Annotated[bool, typer.Option("--csv", help="Write waveforms as CSV, too.", rich_help_panel=_OUTPUT)] = False,
+    exit_zero: Annotated[
+        bool,
+        typer.Option("--exit-zero", help="End with 0 whatever the verdicts.", rich_help_panel=_OUTPUT),
+    ] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Print one line of summary.", rich_help_panel=_OUTPUT)
+    ] = False,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> int | None:
+    """Judge a PV inverter's controller against a grid code."""
+    del version  # acted on before this function is called
+    if context.invoked_subcommand is not None:
+        return None
+    from pvlvrt_compliance.cli.request import Request, SagRequest
+
+    request = Request(
+        profile=profile,
+        sag=SagRequest(sag, phases, two_phase, duration, point_on_wave, irradiance) if sag else None,
+        overrides={
+            "frequency_hz": frequency,
+            "cell_temperature_c": temperature,
+            "scr": scr,
+            "xr": xr,
+        },
+        assignments=tuple(assignments or ()),
+        patterns=tuple(tests or ()),
+        output=output,
+        csv=csv,
+        exit_zero=exit_zero,
+        quiet=quiet,
+        command=("pvlvrt-check", *sys.argv[1:]),
+    )
+    if not sag and (phases or two_phase or duration or point_on_wave is not None or irradiance is not None):
+        raise UsageError("--phases, --two-phase, --duration, --point-on-wave and --irradiance need --sag")
+    if sag and tests:
+        raise UsageError("--test selects from the profile's own tests; it does not go with --sag")
+    if list_only:
+        from pvlvrt_compliance.cli.catalogue import show_tests
+
+        return show_tests(request)
+    from pvlvrt_compliance.cli.execute import execute
+
+    return execute(request)
+
+
+check.__doc__ = _HELP

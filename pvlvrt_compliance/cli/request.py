@@ -1,0 +1,102 @@
+"""What the user asked for, checked and turned into tests and parameters. Nothing is written or simulated here."""
+
+import math
+from typing import Any, NamedTuple
+
+from pydantic import ValidationError
+
+from pvlvrt_compliance.errors import UsageError, did_you_mean
+from pvlvrt_compliance.profile.loading import known_profiles, load_profile
+from pvlvrt_compliance.profile.procedure import TestCase
+from pvlvrt_compliance.profile.profile import Profile
+from pvlvrt_compliance.scenario.parameters import Parameters, parameters_from
+from pvlvrt_compliance.scenario.sag import PAIRS, Sag
+from pvlvrt_compliance.study.selection import select
+from pvlvrt_compliance.units import parse_duration, parse_fraction
+
+_PHASES = ("abc", "a", "b", "c", *PAIRS)
+
+
+class SagRequest(NamedTuple):
+    """The options that describe one sag, as typed."""
+
+    depth: str
+    phases: str
+    two_phase: bool
+    duration: str
+    point_on_wave_deg: float | None
+    irradiance_w_m2: float | None
+
+
+class Request(NamedTuple):
+    """The whole command line."""
+
+    profile: str
+    sag: SagRequest | None
+    overrides: dict[str, float | None]
+    assignments: tuple[str, ...]
+    patterns: tuple[str, ...]
+    output: str
+    csv: bool
+    exit_zero: bool
+    quiet: bool
+    command: tuple[str, ...]
+
+
+class Job(NamedTuple):
+    """What is to be run."""
+
+    profile: Profile
+    tests: tuple[TestCase, ...]
+    parameters: Parameters
+
+
+def prepare(request: Request) -> Job:
+    """Check everything that can be checked before the first simulation.
+
+    Raises
+    ------
+    PvlvrtError
+        When the profile, an option or the selection cannot be used.
+    """
+    if not request.profile:
+        raise UsageError(f"--profile is missing; known profiles: {', '.join(known_profiles())}")
+    profile = load_profile(request.profile)
+    parameters = parameters_from(request.assignments)
+    overrides = _given(request.overrides)
+    if request.sag is not None:
+        tests: tuple[TestCase, ...] = (_sag_test(profile, request.sag, overrides),)
+    else:
+        tests = select(profile.tests(**overrides), request.patterns)
+    if not tests:
+        raise UsageError(f"{profile.id}: the profile has no tests of its own; give one, for instance --sag 90%")
+    return Job(profile, tests, parameters)
+
+
+def _given(fields: dict[str, float | None]) -> dict[str, float]:
+    for name, value in fields.items():
+        if value is not None and not math.isfinite(value):
+            raise UsageError(f"{name}: {value} is not a number that can be used")
+    return {name: value for name, value in fields.items() if value is not None}
+
+
+def _sag_test(profile: Profile, asked: SagRequest, overrides: dict[str, float]) -> TestCase:
+    fields: dict[str, Any] = overrides | _given(
+        {"point_on_wave_deg": asked.point_on_wave_deg, "irradiance_w_m2": asked.irradiance_w_m2}
+    )
+    duration = parse_duration(asked.duration, "--duration") if asked.duration else None
+    return profile.ad_hoc_test(_sag(asked), duration, **fields)
+
+
+def _sag(asked: SagRequest) -> Sag:
+    phases = asked.phases or ("bc" if asked.two_phase else "abc")
+    if phases not in _PHASES:
+        raise UsageError(f"--phases {phases}: unknown; allowed are {', '.join(_PHASES)}{did_you_mean(phases, _PHASES)}")
+    if asked.two_phase and phases not in PAIRS:
+        raise UsageError(f"--two-phase: a pair of phases is needed, {', '.join(PAIRS)}; not {phases!r}")
+    try:
+        return Sag.model_validate(
+            {"depth": parse_fraction(asked.depth, "--sag"), "phases": phases, "two_phase": asked.two_phase}
+        )
+    except ValidationError as error:  # pragma: no cover - every field has been checked above
+        raise UsageError(str(error)) from None

@@ -1,0 +1,11 @@
+"""`pvlvrt-check schema`: the JSON Schema of results.json."""
+
+
+def schema() -> None:
+    """Print the JSON Schema of results.json.
+
+    Example: pvlvrt-check schema > results.schema.json
+    """
+    from pvlvrt_compliance.report.results_json import schema as schema_text
+
+    print(schema_text(), end="")

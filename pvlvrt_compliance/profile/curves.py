@@ -1,0 +1,91 @@
+"""Ride-through envelopes and support curves: broken lines with a mark."""
+
+from itertools import pairwise
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from pydantic import AfterValidator, Field
+
+from pvlvrt_compliance.profile.provenance import Marked
+
+Point = tuple[float, float]
+Points = tuple[Point, ...]
+
+LARGEST_LEVEL_PU = 2.0
+
+
+def _columns(points: Points) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    table = np.asarray(points, dtype=np.float64)
+    return table[:, 0], table[:, 1]
+
+
+def _envelope_points(points: Points) -> Points:
+    if points[0][0] != 0:
+        raise ValueError(f"the first point must be at 0 s, the start of the sag, not at {points[0][0]:g} s")
+    for (earlier, _), (later, _) in pairwise(points):
+        if later < earlier:
+            raise ValueError(f"times must not decrease: {earlier:g} s is followed by {later:g} s")
+    _levels_in_range(points)
+    return points
+
+
+def _curve_points(points: Points) -> Points:
+    for (lower, _), (upper, _) in pairwise(points):
+        if upper <= lower:
+            raise ValueError(f"voltages must increase: {lower:g} pu is followed by {upper:g} pu")
+    _levels_in_range(points)
+    return points
+
+
+def _levels_in_range(points: Points) -> None:
+    for _, level in points:
+        if not 0 <= level <= LARGEST_LEVEL_PU:
+            raise ValueError(f"levels must lie between 0 and {LARGEST_LEVEL_PU:g} pu, not {level:g}")
+
+
+class Envelope(Marked):
+    """Voltage over time since the start of a sag, at and above which an inverter must stay connected.
+
+    ``linear`` joins the points by straight lines, ``step`` holds a level until the next point. Before the first and
+    after the last point their levels hold.
+    """
+
+    clause: str = ""
+    voltage_quantity: Literal["positive_sequence"]
+    interpolation: Literal["linear", "step"]
+    points: Annotated[Points, AfterValidator(_envelope_points)] = Field(min_length=1, description="[t_s, u_pu] each")
+
+    def voltage_at(self, t_s: ArrayLike) -> NDArray[np.float64]:
+        """Level of the envelope (pu) at times since the start of the sag (s); shape of ``t_s``."""
+        times, levels = _columns(self.points)
+        if self.interpolation == "linear":
+            return np.asarray(np.interp(np.asarray(t_s, dtype=np.float64), times, levels))
+        reached = np.searchsorted(times, t_s, side="right") - 1
+        return levels[np.maximum(reached, 0)]
+
+    def time_of(self, u_pu: float) -> float | None:
+        """How long a voltage must be ridden through (s): the first instant the envelope rises above it.
+
+        None where it never does: the voltage must be ridden through for ever.
+        """
+        above = next((k for k, (_, level) in enumerate(self.points) if level > u_pu), None)
+        if above is None:
+            return None
+        t_above, u_above = self.points[above]
+        if above == 0 or self.interpolation == "step":
+            return t_above
+        t_below, u_below = self.points[above - 1]
+        return t_below + (t_above - t_below) * (u_pu - u_below) / (u_above - u_below)
+
+
+class SupportCurve(Marked):
+    """Reactive power demanded (pu of the rated apparent power) over the positive-sequence voltage (pu)."""
+
+    clause: str = ""
+    points: Annotated[Points, AfterValidator(_curve_points)] = Field(min_length=2, description="[u_pu, q_pu] each")
+
+    def reactive_power_at(self, u_pu: ArrayLike) -> NDArray[np.float64]:
+        """Reactive power (pu) at voltages (pu), straight lines between the points; shape of ``u_pu``."""
+        voltages, powers = _columns(self.points)
+        return np.asarray(np.interp(np.asarray(u_pu, dtype=np.float64), voltages, powers))

@@ -1,0 +1,105 @@
+"""A grid code as data: requirements, test procedure and acceptance, each number with its provenance."""
+
+import hashlib
+from collections import Counter
+from typing import Any, Literal
+
+from pydantic import Field
+
+from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.profile.catalogue import expand, make_scenario, sag_duration_s
+from pvlvrt_compliance.profile.curves import Envelope
+from pvlvrt_compliance.profile.procedure import Conditions, Procedure, TestCase, TestRow, Windows
+from pvlvrt_compliance.profile.provenance import VERIFIED, Frozen, canonical_json, marks_in
+from pvlvrt_compliance.profile.requirements import Requirements
+from pvlvrt_compliance.scenario.sag import Sag
+
+SCHEMA_VERSION = 1
+
+
+class Profile(Frozen):
+    """A profile with its includes resolved."""
+
+    schema_version: Literal[1]
+    id: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")
+    title: str = Field(min_length=1)
+    requirements: Requirements
+    conditions: Conditions
+    windows: Windows | None = Field(default=None, description="without it, the standard windows")
+    procedure: Procedure
+    rows: tuple[TestRow, ...] = Field(default=(), alias="tests")
+
+    @property
+    def envelope(self) -> Envelope | None:
+        """The ride-through envelope, where the profile has one."""
+        ride_through = self.requirements.ride_through
+        return ride_through.envelope if ride_through else None
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of the resolved profile: the same numbers give the same digest, whatever the layout of the file."""
+        return hashlib.sha256(canonical_json(self).encode()).hexdigest()
+
+    def sag_duration_s(self, sag: Sag) -> float:
+        """How long the envelope asks a sag to be ridden through (s), by its V+ without the inverter's current.
+
+        Where the envelope asks for ever or not at all, and without an envelope: the procedure's default.
+        """
+        return sag_duration_s(sag, self.envelope, self.procedure)
+
+    def tests(self, **overrides: Any) -> tuple[TestCase, ...]:
+        """Every run of the test table; ``overrides`` replaces fields of all their scenarios (``frequency_hz=60``).
+
+        Raises
+        ------
+        UsageError
+            When a replaced field is unknown or out of its range.
+        """
+        return tuple(case for row in self.rows for case in expand(row, self.procedure, self.envelope, overrides))
+
+    def ad_hoc_test(self, sag: Sag, duration_s: float | None = None, **fields: Any) -> TestCase:
+        """A test of the user's own: outside the table, so without clause and mark.
+
+        Parameters
+        ----------
+        sag : Sag
+        duration_s : float, optional
+            By default what `sag_duration_s` says.
+        **fields
+            Further fields of the `Scenario`.
+
+        Raises
+        ------
+        UsageError
+            When a field is unknown or out of its range.
+        """
+        duration = self.sag_duration_s(sag) if duration_s is None else duration_s
+        name = f"sag-{100 * sag.depth:.6g}pct-{sag.phases}"
+        return TestCase(
+            id=f"{name}-two-phase" if sag.two_phase else name,
+            title=f"{sag.describe()}, {duration:.3f} s",
+            scenario=make_scenario(self.procedure, sag=sag, duration_s=duration, **fields),
+        )
+
+    def unverified(self) -> tuple[str, ...]:
+        """Describe all that was not read in an official text or in its implementation, a sentence each.
+
+        A sentence reads ``ride_through envelope: inferred (<source>)``.
+        """
+        parts = [*self.requirements.by_kind(), ("conditions", self.conditions), ("procedure", self.procedure)]
+        if self.windows:
+            parts.append(("windows", self.windows))
+        marked = [(f"{part} {name}", item) for part, content in parts for name, item in marks_in(content)]
+        marked += [(f"test {row.id}", row) for row in self.rows]
+        doubtful = ((name, item) for name, item in marked if item.confidence not in VERIFIED)
+        return tuple(f"{name}: {item.confidence} ({item.source})" for name, item in doubtful)
+
+    def inconsistencies(self) -> list[str]:
+        """Problems that no single key shows: rows that cannot be expanded, ids that occur twice."""
+        problems, ids = [], Counter[str]()
+        for index, row in enumerate(self.rows):
+            try:
+                ids.update(case.id for case in expand(row, self.procedure, self.envelope, {}))
+            except UsageError as error:
+                problems.append(f"tests[{index}].{error}")
+        return problems + [f"tests: the id {name!r} occurs {count} times" for name, count in ids.items() if count > 1]

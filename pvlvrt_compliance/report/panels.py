@@ -1,0 +1,176 @@
+"""What the figure of a test shows: panels of signals, each with its limits."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from pvlvrt_compliance.checks.results import TestResult
+from pvlvrt_compliance.errors import MeasurementError
+from pvlvrt_compliance.measure.power import instantaneous_power
+from pvlvrt_compliance.measure.sequences import sequence_phasors
+from pvlvrt_compliance.report.decimation import BUCKETS, Samples, Trace, decimate
+from pvlvrt_compliance.report.scenario_words import sag_interval
+from pvlvrt_compliance.units import Nominal
+from pvlvrt_compliance.waveforms.container import Segment, Waveforms
+
+# Tol's high-contrast colours for the phases: told apart with every common colour blindness and in grey on paper.
+_PHASE_COLOURS = {"a": "#004488", "b": "#DDAA33", "c": "#BB5566"}
+BLUE, VERMILION, PURPLE, GREY, BLACK = "#0072B2", "#C44E00", "#9A3D8F", "#767676", "#222222"
+
+LIMIT_NAMES = {
+    "current_fundamental_pu": "limit, fundamental",
+    "current_peak_pu": "limit, peak",
+    "reactive_power_kvar": "limit of Q",
+}
+"""Limits that can be drawn, by key, with their name in the legend."""
+
+
+class Curve(NamedTuple):
+    """A signal, one trace a segment of the record."""
+
+    name: str
+    colour: str
+    traces: Sequence[Trace]
+
+
+class Line(NamedTuple):
+    """A limit: straight lines through points (s, unit of the panel); ``area`` shades what lies below."""
+
+    name: str
+    x: Sequence[float]
+    y: Sequence[float]
+    dash: str = "dash"
+    colour: str = BLACK
+    area: bool = False
+
+
+class Panel(NamedTuple):
+    """One set of axes, ``height`` relative to the others."""
+
+    title: str
+    unit: str
+    height: float
+    curves: Sequence[Curve]
+    lines: Sequence[Line] = ()
+    from_zero: bool = False
+
+
+Signals = Mapping[str, tuple[str, Samples]]
+"""Colour and samples of the signals of a panel, by name, for one segment."""
+
+
+def panels(
+    waveforms: Waveforms,
+    test: TestResult,
+    nominal: Nominal,
+    envelope: Sequence[tuple[float, float]] | None,
+    limits: Mapping[str, float],
+) -> list[Panel]:
+    """Panels of a test; one whose channels the record does not hold is left out."""
+    before = test.measurements.before
+    frequency_hz = (before.frequency_hz if before else None) or nominal.frequency_hz
+    sag = sag_interval(test.scenario)
+    span = (waveforms.t0_s, waveforms.end_s)
+    voltage = _curves(waveforms, lambda s: _three_phase(s, "u", nominal.phase_voltage_peak_v))
+    sequences = _curves(waveforms, lambda s: _sequences(s, frequency_hz, nominal))
+    current = _curves(waveforms, lambda s: _three_phase(s, "i", nominal.phase_current_peak_a))
+    found = [
+        Panel("Phase-to-neutral voltages", "pu", 1.0, voltage),
+        Panel(
+            "Sequence voltages, one cycle",
+            "pu",
+            1.0,
+            sequences,
+            [_envelope(envelope, sag.start_s, span[1])] if envelope and sag else [],
+            from_zero=True,
+        ),
+        Panel("Phase currents", "pu", 1.2, current, _current_limits(limits, span)),
+        Panel("Active and reactive power", "kW, kvar", 1.2, _curves(waveforms, _power), _q_limit(limits, test)),
+        Panel("DC voltage", "V", 0.8, _curves(waveforms, lambda s: {"v<sub>DC</sub>": (BLACK, s["v_dc_v"])})),
+    ]
+    return [panel for panel in found if panel.curves]
+
+
+def opening_s(waveforms: Waveforms) -> float | None:
+    """Instant at which the breaker opens, by the channel ``connected``; None where it never does or is not recorded."""
+    was_closed = False
+    for segment in waveforms:
+        closed = segment.channels.get("connected", np.ones(0)) > 0.5
+        opened = np.flatnonzero(np.concatenate([[was_closed], closed[:-1]])[: len(closed)] & ~closed)
+        if len(opened):
+            return segment.t0_s + float(opened[0]) * segment.dt_s
+        was_closed = bool(len(closed) and closed[-1])
+    return None
+
+
+def _curves(waveforms: Waveforms, signals_of: Callable[[Segment], Signals]) -> list[Curve]:
+    """Curves by name over all segments that the signals can be had from."""
+    total = sum(len(segment) for segment in waveforms)
+    colours: dict[str, str] = {}
+    traces: dict[str, list[Trace]] = {}
+    for segment, signals in _signals(waveforms, signals_of):
+        for name, (colour, samples) in signals.items():
+            colours[name] = colour
+            share = max(BUCKETS * len(segment) // total, 1)
+            traces.setdefault(name, []).append(_without_leading_gap(segment, samples, share))
+    return [Curve(name, colours[name], traces[name]) for name in traces]
+
+
+def _signals(waveforms: Waveforms, signals_of: Callable[[Segment], Signals]) -> Iterator[tuple[Segment, Signals]]:
+    for segment in waveforms:
+        try:
+            yield segment, signals_of(segment)
+        except MeasurementError:
+            continue  # a recording without this channel, or sampled too thinly to measure it
+
+
+def _without_leading_gap(segment: Segment, samples: Samples, buckets: int) -> Trace:
+    valid = np.flatnonzero(np.isfinite(samples))
+    first = int(valid[0]) if len(valid) else 0
+    return decimate(segment.t0_s + first * segment.dt_s, segment.dt_s, samples[first:], buckets)
+
+
+def _three_phase(segment: Segment, kind: str, base: float) -> Signals:
+    phases = segment.three_phase(kind)._asdict()
+    return {f"{kind}<sub>{name}</sub>": (_PHASE_COLOURS[name], x / base) for name, x in phases.items()}
+
+
+def _sequences(segment: Segment, frequency_hz: float, nominal: Nominal) -> Signals:
+    phasors = sequence_phasors(segment, "u", frequency_hz)
+    base = nominal.phase_voltage_peak_v
+    return {
+        "V<sup>+</sup>": (BLACK, np.abs(phasors.positive) / base),
+        "V<sup>−</sup>": (PURPLE, np.abs(phasors.negative) / base),
+    }
+
+
+def _power(segment: Segment) -> Signals:
+    power = instantaneous_power(segment)
+    return {"P": (BLACK, power.p / 1e3), "Q": (PURPLE, power.q / 1e3)}
+
+
+def _envelope(envelope: Iterable[tuple[float, float]], start_s: float, end_s: float) -> Line:
+    """Envelope from the start of the sag on; its last value holds to the end of the record."""
+    x, y = (list(axis) for axis in zip(*envelope, strict=True))
+    x = [start_s + t for t in x]
+    return Line("ride-through envelope", [*x, max(end_s, x[-1])], [*y, y[-1]], "dash", VERMILION, area=True)
+
+
+def _current_limits(limits: Mapping[str, float], span: tuple[float, float]) -> list[Line]:
+    lines = []
+    for key, dash in (("current_fundamental_pu", "dash"), ("current_peak_pu", "dot")):
+        if key in limits:
+            # One line there and back, so that the legend shows the pair once.
+            x = [*span, span[1], *reversed(span)]
+            y = [limits[key], limits[key], np.nan, -limits[key], -limits[key]]
+            lines.append(Line(LIMIT_NAMES[key], x, y, dash))
+    return lines
+
+
+def _q_limit(limits: Mapping[str, float], test: TestResult) -> list[Line]:
+    during = test.measurements.during
+    if during is None or "reactive_power_kvar" not in limits:
+        return []
+    value = limits["reactive_power_kvar"]
+    return [Line(LIMIT_NAMES["reactive_power_kvar"], [during.start_s, during.end_s], [value, value], "dash", VERMILION)]

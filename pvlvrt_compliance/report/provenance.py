@@ -1,0 +1,32 @@
+"""Provenance as tables, whatever depth it has."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+
+class Group(NamedTuple):
+    """A table of the provenance section."""
+
+    title: str
+    entries: tuple[tuple[str, str], ...]
+
+
+def provenance_groups(provenance: Mapping[str, Any]) -> list[Group]:
+    """Plain values first, then one group for each mapping, nested names joined by dots."""
+    plain = tuple((name, _text(value)) for name, value in provenance.items() if not isinstance(value, Mapping))
+    nested = [Group(name, tuple(_flatten(value))) for name, value in provenance.items() if isinstance(value, Mapping)]
+    return [group for group in (Group("run", plain), *nested) if group.entries]
+
+
+def _flatten(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
+    for name, value in values.items():
+        if isinstance(value, Mapping):
+            yield from _flatten(value, f"{prefix}{name}.")
+        else:
+            yield prefix + str(name), _text(value)
+
+
+def _text(value: object) -> str:
+    if isinstance(value, list | tuple):
+        return ", ".join(map(_text, value))
+    return f"{value:.10g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,57 @@
+"""What a report must carry to be made again: versions, digests, parameters, the command."""
+
+import os
+import platform
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from importlib.metadata import version
+from typing import Any
+
+from pvlvrt_compliance import __version__
+from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.kernel import kernel_digest
+from pvlvrt_compliance.profile.profile import Profile
+from pvlvrt_compliance.scenario.parameters import Parameters
+
+_LIBRARIES = ("numpy", "scipy", "numba", "pydantic", "plotly")
+
+
+def created_at() -> datetime:
+    """Time of the run, whole seconds, UTC; ``SOURCE_DATE_EPOCH`` fixes it for reproducible files.
+
+    Raises
+    ------
+    UsageError
+        When ``SOURCE_DATE_EPOCH`` is not a number of seconds.
+    """
+    text = os.environ.get("SOURCE_DATE_EPOCH")
+    if text is None:
+        return datetime.now(UTC).replace(microsecond=0)
+    try:
+        return datetime.fromtimestamp(int(text), UTC)
+    except (ValueError, OverflowError, OSError):
+        raise UsageError(f"SOURCE_DATE_EPOCH: {text!r} is not a number of seconds") from None
+
+
+def provenance(profile: Profile, parameters: Parameters, command: Sequence[str], created: datetime) -> dict[str, Any]:
+    """Everything that decides the figures of a run, as `results.json` carries it."""
+    return {
+        "created": created.isoformat(),
+        "command": _quoted(command),
+        "profile": profile.id,
+        "profile_digest": profile.digest,
+        "controller": "bundled",
+        "controller_digest": kernel_digest(),
+        "versions": {
+            "pvlvrt-compliance": __version__,
+            "python": platform.python_version(),
+            **{name: version(name) for name in _LIBRARIES},
+        },
+        "parameters": parameters.model_dump(mode="json"),
+    }
+
+
+def _quoted(command: Sequence[str]) -> str:
+    import shlex
+
+    return shlex.join(command)

@@ -1,0 +1,46 @@
+"""Running tests: from a profile's test to a judged record."""
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import NamedTuple
+
+from pvlvrt_compliance.checks.evaluate import errored, evaluate
+from pvlvrt_compliance.checks.results import TestResult
+from pvlvrt_compliance.errors import PvlvrtError
+from pvlvrt_compliance.profile.procedure import TestCase
+from pvlvrt_compliance.profile.profile import Profile
+from pvlvrt_compliance.scenario.parameters import Parameters
+from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.simulate import available_power_w, simulate
+from pvlvrt_compliance.simulation.translate import nominal_of
+from pvlvrt_compliance.waveforms import Waveforms
+
+Simulator = Callable[[Scenario, Parameters], Waveforms]
+
+
+class Judged(NamedTuple):
+    """A test that has run."""
+
+    result: TestResult
+    waveforms: Waveforms | None  # None when the simulation gave none
+
+
+def run_test(profile: Profile, test: TestCase, parameters: Parameters, simulator: Simulator = simulate) -> Judged:
+    """Simulate one test and judge its record.
+
+    What goes wrong inside the simulation makes the verdicts `error`, with the reason; nothing is raised.
+    """
+    try:
+        waveforms = simulator(test.scenario, parameters)
+        available_w = available_power_w(test.scenario, parameters)
+    except (PvlvrtError, ArithmeticError) as error:
+        return Judged(errored(profile, test, str(error)), None)
+    nominal = nominal_of(parameters, test.scenario)
+    return Judged(evaluate(profile, test, waveforms, nominal, available_w), waveforms)
+
+
+def run_tests(
+    profile: Profile, tests: Iterable[TestCase], parameters: Parameters, simulator: Simulator = simulate
+) -> Iterator[Judged]:
+    """Run tests one after the other, each judged as soon as it has run; records are not kept."""
+    for test in tests:
+        yield run_test(profile, test, parameters, simulator)
