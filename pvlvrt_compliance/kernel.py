@@ -7,7 +7,7 @@ folder is therefore named after a digest of every kernel source, so that an edit
 import hashlib
 import os
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -15,6 +15,9 @@ import numba
 import platformdirs
 
 F = TypeVar("F", bound=Callable[..., Any])
+
+# A division by zero gives inf, which the loop finds, instead of a check and a branch at every division.
+_njit: Any = partial(numba.njit, error_model="numpy")
 
 _PACKAGE = Path(__file__).resolve().parent
 _KERNEL_FOLDERS = ("control", "plant", "simulation")
@@ -40,8 +43,11 @@ def cache_folder() -> Path:
 
 
 def kernel(function: F) -> F:
-    """Compile a block: inlined into whatever calls it, never fast-math, float64."""
-    compiled: F = numba.njit(function, forceinline=True)
+    """Compile a block: inlined into whatever calls it, never fast-math, float64.
+
+    Only compiled code can call it (from Python, see `plain`): wrappers for Python would double the time to compile.
+    """
+    compiled: F = _njit(function, forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
     return compiled
 
 
@@ -61,9 +67,9 @@ def cached_kernel(function: F) -> F:
     before = config.CACHE_DIR
     config.CACHE_DIR = str(cache_folder())
     try:
-        compiled: F = numba.njit(function, cache=True, nogil=True)
+        compiled: F = _njit(function, cache=True, nogil=True, no_cfunc_wrapper=True)
     except RuntimeError:  # no writable folder anywhere: compile every time rather than not at all
-        compiled = numba.njit(function, nogil=True)
+        compiled = _njit(function, nogil=True, no_cfunc_wrapper=True)
     finally:
         config.CACHE_DIR = before
     return compiled

@@ -1,5 +1,7 @@
 """One record against one profile: every requirement becomes a verdict, whatever the record is like."""
 
+from collections.abc import Iterable
+
 from pvlvrt_compliance.checks.evidence import Evidence, NotApplicable
 from pvlvrt_compliance.checks.registry import find_judge
 from pvlvrt_compliance.checks.results import Check, ProfileSummary, Status, TestResult, worst
@@ -51,9 +53,10 @@ def errored(profile: Profile, test: TestCase, reason: str) -> TestResult:
     return _result(profile, test, checks, Measurements(), 0.0)
 
 
-def summarise(profile: Profile) -> ProfileSummary:
-    """The profile as a report shows it, with what is not verified."""
-    return ProfileSummary(id=profile.id, title=profile.title, digest=profile.digest, notes=profile.unverified())
+def summarise(profile: Profile, tests: Iterable[TestCase]) -> ProfileSummary:
+    """The profile as a report on these tests shows it, with what is not verified."""
+    notes = profile.unverified({test.id for test in tests})
+    return ProfileSummary(id=profile.id, title=profile.title, digest=profile.digest, notes=notes)
 
 
 def collect(

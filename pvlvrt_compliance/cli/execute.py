@@ -74,7 +74,7 @@ class _Run:
         """What is finished, as one result object."""
         job = self.job
         origin = provenance(job.profile, job.parameters, self.request.command, self.created)
-        return conclude(self.finished, [summarise(job.profile)], origin)
+        return conclude(self.finished, [summarise(job.profile, job.tests)], origin)
 
     def write_reports(self) -> Results:
         """Stage all reports."""

@@ -1,13 +1,16 @@
 """PV array: single-diode module, irradiance by De Soto, temperature by the datasheet's coefficients."""
 
 import math
-from functools import cache
+from collections.abc import Callable
+from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.special import lambertw
 
 from pvlvrt_compliance.errors import UsageError
-from pvlvrt_compliance.kernel import kernel, plain
+from pvlvrt_compliance.kernel import kernel
 
 STC_IRRADIANCE = 1000.0
 """Irradiance at standard test conditions (W/m2)."""
@@ -17,6 +20,7 @@ STC_TEMPERATURE = 25.0
 # Beyond this change of the diode voltage (V) a further Newton step is needed: its error is the square of it over 2 a.
 _NEWTON_TOLERANCE = 1e-4
 _NEWTON_STEPS = 50
+_BISECTIONS = 60
 
 
 class Module(NamedTuple):
@@ -81,96 +85,138 @@ def array_current(v: float, x: float, p: PvParams) -> float:
     return p.n_parallel * (x - v / p.n_series) / p.R_s
 
 
+def at_temperature(module: Module, temperature: float) -> Module:
+    """Datasheet at another cell temperature (degrees C), each value moved linearly by its coefficient.
+
+    I_mp moves with the coefficient of I_sc, and V_mp with what that of maximum power leaves.
+    """
+    dT = temperature - STC_TEMPERATURE
+    return module._replace(
+        I_sc=module.I_sc * (1 + module.alpha_isc * dT),
+        I_mp=module.I_mp * (1 + module.alpha_isc * dT),
+        V_oc=module.V_oc * (1 + module.beta_voc * dT),
+        V_mp=module.V_mp * (1 + (module.gamma_pmp - module.alpha_isc) * dT),
+    )
+
+
 @cache
 def fit(module: Module, temperature: float, n_series: int, n_parallel: int) -> PvParams:
     """Single-diode parameters that meet the datasheet at a cell temperature (degrees C).
 
-    I_sc, V_oc, I_mp and V_mp move linearly with the datasheet's coefficients (I_mp with that of I_sc, V_mp with what
-    the one of maximum power leaves); then the four conditions I(0) = I_sc, I(V_oc) = 0, I(V_mp) = I_mp and
-    dP/dV(V_mp) = 0 are solved with R_sh fixed.
+    The four conditions I(0) = I_sc, I(V_oc) = 0, I(V_mp) = I_mp and dP/dV(V_mp) = 0 are solved with R_sh fixed, from
+    standard conditions to this temperature in steps small enough for Newton.
 
     Raises
     ------
     UsageError
         When no physical parameters meet the four conditions.
     """
-    from scipy.optimize import root
-
-    dT = temperature - STC_TEMPERATURE
-    I_sc = module.I_sc * (1 + module.alpha_isc * dT)
-    I_mp = module.I_mp * (1 + module.alpha_isc * dT)
-    V_oc = module.V_oc * (1 + module.beta_voc * dT)
-    V_mp = module.V_mp * (1 + (module.gamma_pmp - module.alpha_isc) * dT)
+    solution = np.array([math.log(module.I_sc), 0.5, module.V_oc / 40])  # typical of crystalline silicon
+    for T in np.linspace(STC_TEMPERATURE, temperature, 1 + math.ceil(abs(temperature - STC_TEMPERATURE) / 10)):
+        at_T = at_temperature(module, float(T))
+        solution = _newton(partial(_conditions, module=at_T), solution)
+    ln_I_d, R_s, a = map(float, solution)
+    if not (R_s > 0 and a > 0):
+        raise UsageError(f"no single-diode parameters meet the module's data at a cell of {temperature:g} C")
+    I_0 = math.exp(ln_I_d - at_T.V_oc / a)
     G_sh = 1 / module.R_sh
-
-    def conditions(unknowns: np.ndarray) -> list[float]:
-        I_L, ln_I_0, R_s, a = unknowns
-
-        def diode(v: float, i: float) -> float:
-            return math.exp(min(ln_I_0 + (v + i * R_s) / a, 700.0))
-
-        def current(v: float, i: float) -> float:
-            return float(I_L - diode(v, i) + math.exp(ln_I_0) - (v + i * R_s) * G_sh - i)
-
-        slope = diode(V_mp, I_mp) / a + G_sh
-        return [
-            current(0, I_sc),
-            current(V_oc, 0),
-            current(V_mp, I_mp),
-            I_mp - V_mp * slope / (1 + R_s * slope),
-        ]
-
-    a = 1.14 * (temperature + 273.15) / 298.15
-    found = root(conditions, [I_sc, math.log(I_sc) - V_oc / a, 0.58, a], tol=1e-13)
-    I_L, ln_I_0, R_s, a = (float(value) for value in found.x)
-    if max(abs(residual) for residual in conditions(found.x)) > 1e-9 or R_s <= 0 or a <= 0:
-        raise UsageError(
-            f"no single-diode parameters meet the module's data at a cell temperature of {temperature:g} C"
-        )
     return PvParams(
-        I_L=I_L, I_0=math.exp(ln_I_0), R_s=R_s, G_sh=G_sh, a=a, n_series=float(n_series), n_parallel=float(n_parallel)
+        I_L=I_0 * math.expm1(at_T.V_oc / a) + at_T.V_oc * G_sh,
+        I_0=I_0,
+        R_s=R_s,
+        G_sh=G_sh,
+        a=a,
+        n_series=float(n_series),
+        n_parallel=float(n_parallel),
     )
 
 
+def _conditions(unknowns: NDArray[np.complex128], module: Module) -> NDArray[np.complex128]:
+    """What is left of I(0) = I_sc, I(V_mp) = I_mp (A) and dP/dV(V_mp) = 0 (A); I_L is eliminated by I(V_oc) = 0.
+
+    The unknowns are ln of the diode's exponential at V_oc (A), R_s (ohm) and a (V): with ln I_0 itself in the place of
+    the first, Newton would run away.
+    """
+    ln_I_d, R_s, a = unknowns
+    G_sh = 1 / module.R_sh
+
+    def current_left(v: float, i: float) -> complex:
+        x = v + i * R_s
+        diodes = np.exp(ln_I_d) * (1 - np.exp((x - module.V_oc) / a))
+        return complex(diodes + (module.V_oc - x) * G_sh - i)
+
+    slope = np.exp(ln_I_d + (module.V_mp + module.I_mp * R_s - module.V_oc) / a) / a + G_sh
+    return np.array(
+        [
+            current_left(0.0, module.I_sc),
+            current_left(module.V_mp, module.I_mp),
+            module.I_mp - module.V_mp * slope / (1 + R_s * slope),
+        ]
+    )
+
+
+def _newton(
+    function: Callable[[NDArray[np.complex128]], NDArray[np.complex128]], guess: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Zero of a small analytic system, by Newton with derivatives from a complex step; not a number if none is found.
+
+    scipy.optimize would do, but importing it takes longer than everything else that a run does.
+    """
+    x = guess.copy()
+    for _ in range(_NEWTON_STEPS):
+        steps = [function(x + 1e-30j * axis).imag / 1e-30 for axis in np.eye(len(x))]
+        dx = np.linalg.solve(np.transpose(steps), function(x.astype(np.complex128)).real)
+        x -= dx
+        if np.all(np.abs(dx) <= 1e-13 * np.abs(x)):
+            break
+    else:
+        x[:] = math.nan
+    return x
+
+
 def current_at(v: float, irradiance: float, p: PvParams) -> float:
-    """Array current (A) at a voltage (V) and an irradiance (W/m2)."""
-    guess = max(v / p.n_series, 0.0) + p.R_s * p.I_L
-    x = plain(diode_voltage)(v, irradiance / STC_IRRADIANCE, guess, p)
-    return plain(array_current)(v, x, p)
+    """Array current (A) at a voltage (V) and an irradiance (W/m2): the closed form by Lambert's W."""
+    G = irradiance / STC_IRRADIANCE
+    G_sh = p.G_sh * G
+    v_module = v / p.n_series
+    shunted = p.a * (1 + p.R_s * G_sh)
+    source = p.I_L * G + p.I_0
+    argument = p.R_s * p.I_0 / shunted * math.exp((p.R_s * source + v_module) / shunted)
+    i = (source - v_module * G_sh) / (1 + p.R_s * G_sh) - p.a / p.R_s * float(lambertw(argument).real)
+    return p.n_parallel * i
 
 
 def open_circuit_voltage(irradiance: float, p: PvParams) -> float:
     """Voltage of the array without current (V)."""
-    if irradiance <= 0:
-        return 0.0
-    return _zero_of(lambda v: current_at(v, irradiance, p), 0.0, 2 * p.n_series * p.a * math.log(p.I_L / p.I_0))
+    v_far = 2 * p.n_series * p.a * math.log(p.I_L / p.I_0)
+    return _zero_of(lambda v: current_at(v, irradiance, p), 0.0, v_far)
 
 
 def maximum_power_point(irradiance: float, p: PvParams) -> Operating:
-    """Voltage (V) and power (W) at which the array gives most."""
-    from scipy.optimize import minimize_scalar
+    """Voltage (V) and power (W) at which the array gives most: where dP/dV = 0."""
 
-    v_oc = open_circuit_voltage(irradiance, p)
-    if v_oc == 0:
-        return Operating(v=0.0, p=0.0)
-    best = minimize_scalar(
-        lambda v: -v * current_at(v, irradiance, p),
-        bounds=(0.4 * v_oc, v_oc),
-        method="bounded",
-        options={"xatol": 1e-6},
-    )
-    return Operating(v=float(best.x), p=float(-best.fun))
+    def power_slope(v: float) -> float:
+        i = current_at(v, irradiance, p)
+        x = v / p.n_series + p.R_s * i / p.n_parallel
+        g = p.I_0 / p.a * math.exp(x / p.a) + p.G_sh * irradiance / STC_IRRADIANCE
+        return i - v * p.n_parallel / p.n_series * g / (1 + p.R_s * g)
+
+    v = _zero_of(power_slope, 0.0, open_circuit_voltage(irradiance, p))
+    return Operating(v=v, p=v * current_at(v, irradiance, p))
 
 
 def voltage_at_power(power: float, irradiance: float, p: PvParams) -> float:
     """Voltage right of the maximum-power point at which the array gives ``power`` (W, not above the maximum) (V)."""
     best = maximum_power_point(irradiance, p)
-    return _zero_of(
-        lambda v: v * current_at(v, irradiance, p) - min(power, best.p), best.v, open_circuit_voltage(irradiance, p)
-    )
+    v_oc = open_circuit_voltage(irradiance, p)
+    return _zero_of(lambda v: v * current_at(v, irradiance, p) - min(power, best.p), best.v, v_oc)
 
 
-def _zero_of(function, low: float, high: float) -> float:  # type: ignore[no-untyped-def]
-    from scipy.optimize import brentq
-
-    return float(brentq(function, low, high, xtol=1e-9)) if function(low) > 0 else low
+def _zero_of(falling: Callable[[float], float], low: float, high: float) -> float:
+    """Zero of a falling function by bisection, to the last digits; ``low`` when it is not positive there."""
+    if falling(low) <= 0:
+        return low
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if falling(middle) > 0 else (low, middle)
+    return 0.5 * (low + high)

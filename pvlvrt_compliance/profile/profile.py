@@ -2,6 +2,7 @@
 
 import hashlib
 from collections import Counter
+from collections.abc import Collection
 from typing import Any, Literal
 
 from pydantic import Field
@@ -81,18 +82,27 @@ class Profile(Frozen):
             scenario=make_scenario(self.procedure, sag=sag, duration_s=duration, **fields),
         )
 
-    def unverified(self) -> tuple[str, ...]:
+    def unverified(self, case_ids: Collection[str] | None = None) -> tuple[str, ...]:
         """Describe all that was not read in an official text or in its implementation, a sentence each.
 
-        A sentence reads ``ride_through envelope: inferred (<source>)``.
+        A sentence reads ``ride_through envelope: inferred (<source>)``. Of the test table only the rows count that
+        give a test in ``case_ids``; without it, all. Rows with the same mark and source share a sentence.
         """
         parts = [*self.requirements.by_kind(), ("conditions", self.conditions), ("procedure", self.procedure)]
         if self.windows:
             parts.append(("windows", self.windows))
-        marked = [(f"{part} {name}", item) for part, content in parts for name, item in marks_in(content)]
-        marked += [(f"test {row.id}", row) for row in self.rows]
-        doubtful = ((name, item) for name, item in marked if item.confidence not in VERIFIED)
-        return tuple(f"{name}: {item.confidence} ({item.source})" for name, item in doubtful)
+        sentences = [
+            f"{part} {name}: {item.confidence} ({item.source})"
+            for part, content in parts
+            for name, item in marks_in(content)
+            if item.confidence not in VERIFIED
+        ]
+        doubtful: dict[str, list[str]] = {}
+        for row in self.rows:
+            cases = {case.id for case in expand(row, self.procedure, self.envelope, {})}
+            if row.confidence not in VERIFIED and (case_ids is None or not cases.isdisjoint(case_ids)):
+                doubtful.setdefault(f"{row.confidence} ({row.source})", []).append(row.id)
+        return (*sentences, *(f"tests {', '.join(ids)}: {mark}" for mark, ids in doubtful.items()))
 
     def inconsistencies(self) -> list[str]:
         """Problems that no single key shows: rows that cannot be expanded, ids that occur twice."""

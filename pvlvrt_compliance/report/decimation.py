@@ -26,7 +26,7 @@ def decimate(t0_s: float, dt_s: float, samples: Samples, buckets: int = BUCKETS)
 
     A bucket gives the samples at the middle of its halves, so a smooth curve stays smooth when zoomed into; where its
     minimum or maximum is extreme among the neighbouring buckets too, that one takes the place of the point of its half.
-    Every peak of the signal therefore keeps its value and is drawn at most half a bucket from its instant.
+    Every peak of the signal therefore keeps its value and is drawn within a bucket of its instant.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def decimate(t0_s: float, dt_s: float, samples: Samples, buckets: int = BUCKETS)
     rows = np.pad(finite, (0, -len(finite) % (2 * half)), mode="edge").reshape(-1, 2 * half)
     points = rows[:, [half // 2, half + half // 2]]
     _keep_extremes(rows, points)
-    return Trace(t0_s + (half // 2) * dt_s, half * dt_s, points.ravel()[: math.ceil(len(finite) / half)])
+    return Trace(t0_s + (half // 2) * dt_s, half * dt_s, points.ravel())
 
 
 def _keep_extremes(rows: Samples, points: Samples) -> None:

@@ -27,6 +27,8 @@ def _flatten(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str,
 
 
 def _text(value: object) -> str:
+    if value is None:
+        return "none"
     if isinstance(value, list | tuple):
-        return ", ".join(map(_text, value))
+        return ", ".join(f"({_text(item)})" if isinstance(item, list | tuple) else _text(item) for item in value)
     return f"{value:.10g}" if isinstance(value, float) else str(value)

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable
+from itertools import pairwise
 from typing import Annotated, Any, Self
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError, model_validator
@@ -55,7 +56,7 @@ class ProtectionParameters(_Group):
     @model_validator(mode="after")
     def _times_increase(self) -> Self:
         times = [t for t, _ in self.undervoltage_curve]
-        if any(b <= a for a, b in zip(times, times[1:], strict=False)):
+        if any(b <= a for a, b in pairwise(times)):
             raise ValueError("the times of undervoltage_curve must increase")
         return self
 

@@ -1,4 +1,5 @@
 import base64
+import itertools
 import json
 
 import numpy as np
@@ -14,6 +15,7 @@ ENVELOPE = ((0.0, 0.0), (0.15, 0.0), (1.5, 0.85))
 
 @pytest.fixture(scope="module")
 def drawn(make_test, make_figure):
+    """The figure of the common test."""
     return make_figure(make_test())
 
 
@@ -32,7 +34,7 @@ def test_all_panels_share_one_time_axis(drawn):
     axes = sorted({trace["yaxis"] for trace in drawn["data"]})
     assert axes == ["y", "y2", "y3", "y4", "y5"]
     domains = sorted(drawn["layout"][name.replace("y", "yaxis")]["domain"] for name in axes)
-    assert all(below[1] < above[0] for below, above in zip(domains, domains[1:], strict=False))
+    assert all(below[1] < above[0] for below, above in itertools.pairwise(domains))
     assert domains[0][0] == 0
     assert domains[-1][1] == 1
 
@@ -58,7 +60,7 @@ def test_limits_are_drawn(drawn, scenario, make_test):
     envelope = _named(drawn, "ride-through envelope")
     assert envelope["x"][:3] == pytest.approx([scenario.start_s + t for t, _ in ENVELOPE])
     assert envelope["y"][:3] == [u for _, u in ENVELOPE]
-    demanded = _named(drawn, "Q demanded")
+    demanded = _named(drawn, "limit of Q")
     during = make_test().measurements.during
     assert demanded["x"] == [during.start_s, during.end_s]
     assert demanded["y"] == [160.7, 160.7]
@@ -111,7 +113,7 @@ def test_segments_are_drawn_on_their_own_steps(record, make_test, nominal):
     drawn = figure.test_figure(Waveforms((cut, thin)), make_test(), nominal)
     pieces = [trace for trace in drawn["data"] if trace["name"] == "v<sub>DC</sub>"]
     assert [piece["showlegend"] for piece in pieces] == [True, False]
-    assert 0 < pieces[1]["x0"] - _points(pieces[0])[0][-1] < 5e-3
+    assert pieces[1]["x0"] == pytest.approx(_points(pieces[0])[0][-1], abs=2e-3)
 
 
 def test_no_sag_is_drawn_without_marks(make_record, make_test, nominal):

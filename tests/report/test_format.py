@@ -40,7 +40,13 @@ def test_nothing_measured_is_nothing_written():
 
 @pytest.mark.parametrize(
     ("value", "unit", "text"),
-    [(49.96, "kvar", "50.0 kvar"), (1.02, "pu", "1.020 pu"), (0.094, "%", "0.094 %"), (-1e-9, "pu", "0.000 pu"), (3, "", "3")],
+    [
+        (49.96, "kvar", "50.0 kvar"),
+        (1.02, "pu", "1.020 pu"),
+        (0.094, "%", "0.094 %"),
+        (-1e-9, "pu", "0.000 pu"),
+        (3, "", "3"),
+    ],
 )
 def test_usual_numbers(value, unit, text):
     """Each unit has the decimals that its quantity is read with."""

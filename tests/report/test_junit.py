@@ -24,6 +24,7 @@ checks = st.builds(
 
 @st.composite
 def runs(draw):
+    """Runs with arbitrary names and verdicts."""
     tests = []
     for name, found in draw(st.lists(st.tuples(texts, st.lists(checks, max_size=4)), max_size=4)):
         status = worst(check.status for check in found)
@@ -58,10 +59,20 @@ def test_names_and_outcomes(make_test, make_results):
     assert root.find("testsuite").get("time") == "1.709"
 
 
-@pytest.mark.parametrize(("given_text", "read"), [("a\x00b\x1bc", "a\ufffdb\ufffdc"), ("\ud800", "\ufffd"), ("1 < 2 & ü", "1 < 2 & ü")])
+@pytest.mark.parametrize(
+    ("given_text", "read"), [("a\x00b\x1bc", "a\ufffdb\ufffdc"), ("\ud800", "\ufffd"), ("1 < 2 & ü", "1 < 2 & ü")]
+)
 def test_characters_that_xml_cannot_hold_are_replaced(given_text, read):
     """A message with control characters still is a readable file."""
-    check = Check.model_construct(check="x", status=Status.FAIL, message=given_text, **dict.fromkeys(["measured", "limit", "margin", "at_s"]), unit="", clause="", confidence="")
+    check = Check.model_construct(
+        check="x",
+        status=Status.FAIL,
+        message=given_text,
+        **dict.fromkeys(["measured", "limit", "margin", "at_s"]),
+        unit="",
+        clause="",
+        confidence="",
+    )
     test = TestResult.model_construct(**(TestResult(id="t", status=Status.FAIL).__dict__ | {"checks": (check,)}))
     root = ET.fromstring(junit.render(conclude([test])))
     assert root.find(".//failure").get("message") == read

@@ -1,0 +1,251 @@
+"""The C twin of plant and controller: builds it, and calls it with the very arguments of `simulation.loop.run`.
+
+Structures and constants of the C sources come from the package's NamedTuples, so no field, order or number is written
+twice: a field that is renamed there no longer compiles here.
+"""
+
+import ctypes
+import shutil
+import subprocess
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pvlvrt_compliance.control import controller, lvrt, msogi_fll
+from pvlvrt_compliance.plant import grid, inverter, plant, protection, pv_array
+from pvlvrt_compliance.scenario.parameters import Parameters
+from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation import loop
+from pvlvrt_compliance.simulation.simulate import simulate
+from pvlvrt_compliance.space_vectors import SQRT2_3, SQRT3_2
+from pvlvrt_compliance.units import Nominal
+from pvlvrt_compliance.waveforms.container import unit_of
+
+SCENARIOS: Mapping[str, Scenario] = {
+    "three-phase 90 %": Scenario(sag=Sag(depth=0.9), duration_s=0.309),
+    "phase c 90 %": Scenario(sag=Sag(depth=0.9, phases="c"), duration_s=1.262),
+    "isolated two-phase 80 % at 200 W/m2": Scenario(
+        sag=Sag(depth=0.8, phases="bc", two_phase=True), duration_s=0.5, irradiance_w_m2=200.0
+    ),
+    "three-phase 90 % for 500 ms (trips)": Scenario(sag=Sag(depth=0.9), duration_s=0.5),
+    "three-phase 90 % at SCR 5": Scenario(sag=Sag(depth=0.9), duration_s=0.309, scr=5.0),
+}
+"""Runs on which twin and package must agree: faults, the search for the maximum power, a trip, a weak grid."""
+
+TOLERANCE = 1e-6
+"""Largest difference of two waveforms, of nominal."""
+
+_FOLDER = Path(__file__).resolve().parent
+_FLAGS = ("-std=gnu99", "-O3", "-march=native", "-fcx-limited-range", "-Wall", "-Wextra", "-shared", "-fPIC")
+
+_STRUCTURES = (
+    msogi_fll.Synchronisation,
+    lvrt.LvrtOrder,
+    controller.Measured,
+    controller.ControllerSignals,
+    controller.ControllerState,
+    controller.ControllerParams,
+    grid.Source,
+    inverter.Bridge,
+    plant.Observed,
+    plant.PlantParams,
+    plant.PlantTables,
+    loop.Outcome,
+)
+_CONSTANTS: Mapping[str, float] = {
+    "PI": np.pi,
+    "SQRT2_3": SQRT2_3,
+    "SQRT3_2": SQRT3_2,
+    "BRIDGE_GAIN": inverter.K_PWM,
+    "M_MAX": inverter.M_MAX,
+    "K_DIODES": inverter._K_DIODES,
+    "NEWTON_TOLERANCE": pv_array._NEWTON_TOLERANCE,
+    "NEWTON_STEPS": pv_array._NEWTON_STEPS,
+    "RELAY_K": protection._K,
+    "RELAY_SMALL": protection._SMALL,
+    "FREQUENCY_FILTER": protection._FREQUENCY_FILTER,
+    "NO_TRIP": protection.NO_TRIP,
+    "OVERCURRENT": protection.OVERCURRENT,
+    "DC_OVERVOLTAGE": protection.DC_OVERVOLTAGE,
+    "UNDERVOLTAGE": protection.UNDERVOLTAGE,
+    "FREQUENCY": protection.FREQUENCY,
+    "COMPLETED": loop.COMPLETED,
+    "NOT_FINITE": loop.NOT_FINITE,
+    "CHANNELS": len(loop.CHANNELS),
+}
+
+
+class _Field(NamedTuple):
+    c: str  # how C declares it
+    ctype: Any  # how ctypes does
+
+
+_SCALARS: Mapping[Any, _Field] = {
+    float: _Field("double", ctypes.c_double),
+    int: _Field("int64_t", ctypes.c_int64),
+    bool: _Field("bool", ctypes.c_bool),
+    complex: _Field("double complex", ctypes.c_double * 2),
+    NDArray[np.float64]: _Field("const double *", ctypes.c_void_p),
+    NDArray[np.complex128]: _Field("const double complex *", ctypes.c_void_p),
+}
+
+
+def compiler() -> str | None:
+    """Path of the C compiler, or None."""
+    return shutil.which("gcc")
+
+
+def _fields(named_tuple: Any) -> dict[str, _Field]:
+    """Fields of a NamedTuple in C; a table of arrays gets one more, their common ``size``."""
+    hints = get_type_hints(named_tuple)
+    fields = {
+        name: _SCALARS[hint] if hint in _SCALARS else _Field(hint.__name__, _structure(hint))
+        for name, hint in hints.items()
+    }
+    if any(field.ctype is ctypes.c_void_p for field in fields.values()):
+        fields["size"] = _SCALARS[int]
+    return fields
+
+
+@cache
+def _structure(named_tuple: Any) -> Any:
+    """Structure of ctypes with the fields of a NamedTuple, nested ones included."""
+    members = [(name, field.ctype) for name, field in _fields(named_tuple).items()]
+    return type(named_tuple.__name__, (ctypes.Structure,), {"_fields_": members})
+
+
+def _nested(named_tuple: Any) -> list[Any]:
+    """All NamedTuples that one consists of, itself last."""
+    hints = get_type_hints(named_tuple).values()
+    return [inner for hint in hints if hint not in _SCALARS for inner in _nested(hint)] + [named_tuple]
+
+
+def layout() -> str:
+    """Text of ``layout.h``: the structures and constants of the package, in C."""
+    order = dict.fromkeys(inner for outer in _STRUCTURES for inner in _nested(outer))
+    lines = ["#pragma once", ""]
+    for named_tuple in order:
+        members = " ".join(f"{field.c} {name};" for name, field in _fields(named_tuple).items())
+        lines.append(f"typedef struct {{ {members} }} {named_tuple.__name__};")
+    for name, value in _CONSTANTS.items():
+        lines.append(f"#define {name} {value if isinstance(value, int) else float(value).hex()}")
+    return "\n".join([*lines, ""])
+
+
+def _packed(value: Any) -> Any:
+    """Structure of ctypes with the values of a NamedTuple; arrays stay where they are."""
+    arrays = [x for x in value if isinstance(x, np.ndarray)]
+    members = [_member(x) for x in value] + [len(x) for x in arrays[:1]]
+    named_tuple: Any = type(value)
+    return _structure(named_tuple)(*members)
+
+
+def _member(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        if not value.flags.c_contiguous:
+            raise ValueError("the twin reads contiguous arrays")
+        return value.ctypes.data
+    if isinstance(value, complex):
+        return (ctypes.c_double * 2)(value.real, value.imag)
+    return _packed(value) if isinstance(value, tuple) else value
+
+
+def _unpacked(named_tuple: Any, structure: Any) -> Any:
+    """NamedTuple with the values of a structure of ctypes."""
+    values = {}
+    for name, hint in get_type_hints(named_tuple).items():
+        value = getattr(structure, name)
+        values[name] = complex(*value) if hint is complex else value if hint in _SCALARS else _unpacked(hint, value)
+    return named_tuple(**values)
+
+
+class Arguments(NamedTuple):
+    """What `simulation.loop.run` takes."""
+
+    plant: plant.PlantState
+    controller: controller.ControllerState
+    m: complex
+    first: int
+    plant_params: plant.PlantParams
+    tables: plant.PlantTables
+    controller_params: controller.ControllerParams
+    samples: NDArray[np.float64]
+
+    @property
+    def plant_steps(self) -> int:
+        """Plant steps of the run, unrecorded settling included."""
+        return self.plant_params.ratio * (len(self.samples) - self.first)
+
+
+def arguments_of(scenario: Scenario, parameters: Parameters | None = None) -> Arguments:
+    """Arguments that `simulate` hands to its loop in a scenario; a sample that no run fills stays NaN."""
+    seen: list[Arguments] = []
+
+    def no_loop(*arguments: Any) -> loop.Outcome:
+        seen.append(Arguments(*arguments))
+        return loop.Outcome(status=loop.COMPLETED, samples=0, plant=arguments[0])
+
+    simulate(scenario, parameters or Parameters(), run=no_loop)
+    seen[0].samples.fill(np.nan)
+    return seen[0]
+
+
+class Twin:
+    """The compiled twin, built into a folder that must outlive it.
+
+    Raises
+    ------
+    FileNotFoundError
+        Without gcc.
+    subprocess.CalledProcessError
+        When the sources do not compile, for instance because a field of the package was renamed.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        gcc = compiler()
+        if gcc is None:
+            raise FileNotFoundError("the twin needs gcc")
+        (folder / "layout.h").write_text(layout(), encoding="utf-8")
+        library = folder / "twin.so"
+        subprocess.run(
+            [gcc, *_FLAGS, "-I", str(folder), str(_FOLDER / "twin.c"), "-o", str(library), "-lm"], check=True
+        )
+        self._run = ctypes.CDLL(str(library)).run
+        self._run.restype = _structure(loop.Outcome)
+
+    def prepare(self, arguments: Arguments) -> Callable[[], Any]:
+        """Bare call of the compiled loop on these arguments, which must stay alive; fills their samples."""
+        a = arguments
+        if not (a.samples.flags.c_contiguous and a.samples.dtype == np.float64):
+            raise ValueError("the twin writes contiguous float64 samples")
+        packed = [_packed(x) for x in (a.plant, a.controller, a.plant_params, a.tables, a.controller_params)]
+        start, control, params, tables, control_params = map(ctypes.byref, packed)
+        m, first, count = _member(complex(a.m)), ctypes.c_int64(a.first), ctypes.c_int64(len(a.samples))
+        samples = ctypes.c_void_p(a.samples.ctypes.data)
+        return lambda: self._run(start, control, m, first, params, tables, control_params, samples, count)
+
+    def run(self, arguments: Arguments) -> loop.Outcome:
+        """Run the twin; fills the samples."""
+        outcome: loop.Outcome = _unpacked(loop.Outcome, self.prepare(arguments)())
+        return outcome
+
+
+def scale_of(channel: str, nominal: Nominal) -> float:
+    """What one nominal is in the unit of a channel; 1 where there is no nominal."""
+    if channel in {"v_dc_v", "v_dc_ref_v"}:
+        return 1000.0
+    rated = nominal.apparent_power_va
+    by_unit = {"V": nominal.phase_voltage_peak_v, "A": nominal.phase_current_peak_a, "W": rated, "var": rated}
+    return by_unit.get(unit_of(channel), 1.0)
+
+
+def differences(mine: NDArray[np.float64], theirs: NDArray[np.float64]) -> dict[str, float]:
+    """Largest difference of two records in every channel, of nominal; infinite where a number is missing."""
+    nominal = Nominal()
+    apart = np.nan_to_num(np.abs(mine - theirs).max(axis=0), nan=np.inf)
+    return {name: float(x) / scale_of(name, nominal) for name, x in zip(loop.CHANNELS, apart, strict=True)}

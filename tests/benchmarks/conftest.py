@@ -1,0 +1,29 @@
+"""Loads the benchmarks' modules, which are scripts beside the package."""
+
+import importlib.util
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+_BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
+
+
+@pytest.fixture(scope="session")
+def twin_module() -> ModuleType:
+    """Module that builds and calls the twin."""
+    spec = importlib.util.spec_from_file_location("pvlvrt_benchmark_twin", _BENCHMARKS / "twin.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="session")
+def twin(twin_module: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """C twin of the package's loop."""
+    if twin_module.compiler() is None:
+        pytest.skip("gcc is missing, so the C twin cannot be built")
+    return twin_module.Twin(tmp_path_factory.mktemp("twin"))
