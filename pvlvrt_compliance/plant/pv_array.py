@@ -165,7 +165,10 @@ def _newton(
     x = guess.copy()
     for _ in range(_NEWTON_STEPS):
         steps = [function(x + 1e-30j * axis).imag / 1e-30 for axis in np.eye(len(x))]
-        dx = np.linalg.solve(np.transpose(steps), function(x.astype(np.complex128)).real)
+        try:
+            dx = np.linalg.solve(np.transpose(steps), function(x.astype(np.complex128)).real)
+        except np.linalg.LinAlgError:
+            return np.full_like(x, math.nan)
         x -= dx
         if np.all(np.abs(dx) <= 1e-13 * np.abs(x)):
             break

@@ -69,7 +69,7 @@ def grid_table(scenario: Scenario, nominal: Nominal, T_S: float) -> GridTable:
     w = 2 * math.pi * scenario.frequency_hz
     pos, neg, zero = scenario.sag.sequences_pu()
     start, clear = scenario.start_s, scenario.clear_s
-    t = np.array([-1e6, start, clear])
+    t = np.array([-1e3, start, clear])  # settling is shorter, and angles keep their digits
     peak = nominal.phase_voltage_peak_v
     angle = math.radians(scenario.point_on_wave_deg)
     return GridTable(
