@@ -4,12 +4,11 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from pvlvrt_compliance.cli.request import Request, prepare
+from pvlvrt_compliance.cli.request import Job
 
 
-def show_tests(request: Request) -> int:
+def show_tests(job: Job) -> int:
     """Print the selected tests; nothing is simulated."""
-    job = prepare(request)
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=0)
     for heading in ("test", "sag"):
         table.add_column(heading, no_wrap=True)

@@ -1,6 +1,5 @@
 """The main command: judge an inverter's controller against a profile."""
 
-import sys
 from typing import Annotated
 
 import typer
@@ -12,13 +11,13 @@ _SAG, _SETTING, _OUTPUT = "One sag of your own", "Grid, weather, parameters", "S
 _HELP = """
 Judge a PV inverter's controller against a grid code.
 
-Simulates the profile's tests, or the one sag given with --sag, on the bundled 500 kVA inverter, checks the
+Simulates the profile's tests, or the one sag given with --sag, on the bundled 500 kVA inverter, checks the \
 waveforms and writes report.html, junit.xml, results.json and the waveforms.
 
 Example: [bold]pvlvrt-check --profile iec61400-21 --sag 90%[/bold]
 
-Exit status: 0 all passed, 1 a check failed, 2 wrong usage or profile, 3 something could not be simulated or evaluated,
-130 interrupted.
+Exit status: 0 all passed, 1 a check failed, 2 wrong usage or profile, 3 something could not be simulated or \
+evaluated, 130 interrupted.
 """
 
 
@@ -36,28 +35,30 @@ def check(
         str, typer.Option("--profile", metavar="NAME|FILE", help="Grid code: a shipped name, or a TOML file.")
     ] = "",
     sag: Annotated[
-        str, typer.Option(metavar="DEPTH", help="Depth of the sag, 90% or 0.9; 0% is none.", rich_help_panel=_SAG)
-    ] = "",
+        str | None,
+        typer.Option(metavar="DEPTH", help="Depth of the sag, 90% or 0.9; 0% is none.", rich_help_panel=_SAG),
+    ] = None,
     phases: Annotated[
-        str,
+        str | None,
         typer.Option(
             metavar="PHASES", help="Sagging phases: abc, a, b, c, ab, bc or ca. Default abc.", rich_help_panel=_SAG
         ),
-    ] = "",
+    ] = None,
     two_phase: Annotated[
         bool,
         typer.Option(
             "--two-phase",
+            metavar="[PAIR]",
             help="Isolated two-phase sag: the line-to-line voltage of the pair sags (--two-phase ca; default bc).",
             rich_help_panel=_SAG,
         ),
     ] = False,
     duration: Annotated[
-        str,
+        str | None,
         typer.Option(
             metavar="TIME", help="500ms or 0.5s. Default: as long as the profile demands.", rich_help_panel=_SAG
         ),
-    ] = "",
+    ] = None,
     point_on_wave: Annotated[
         float | None,
         typer.Option(
@@ -99,32 +100,34 @@ def check(
         ),
     ] = None,
     list_only: Annotated[
-        bool, typer.Option("--list", help="Show the selected tests and stop.", rich_help_panel=_OUTPUT)
+        bool, typer.Option("--list", metavar="", help="Show the selected tests and stop.", rich_help_panel=_OUTPUT)
     ] = False,
     output: Annotated[
         str, typer.Option(metavar="FOLDER", help="Where reports go.", rich_help_panel=_OUTPUT)
     ] = "pvlvrt-report",
-    csv: Annotated[bool, typer.Option("--csv", help="Write waveforms as CSV, too.", rich_help_panel=_OUTPUT)] = False,
+    csv: Annotated[
+        bool, typer.Option("--csv", metavar="", help="Write waveforms as CSV, too.", rich_help_panel=_OUTPUT)
+    ] = False,
     exit_zero: Annotated[
         bool,
-        typer.Option("--exit-zero", help="End with 0 whatever the verdicts.", rich_help_panel=_OUTPUT),
+        typer.Option("--exit-zero", metavar="", help="End with 0 whatever the verdicts.", rich_help_panel=_OUTPUT),
     ] = False,
     quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="Print one line of summary.", rich_help_panel=_OUTPUT)
+        bool, typer.Option("--quiet", "-q", metavar="", help="Print one line of summary.", rich_help_panel=_OUTPUT)
     ] = False,
     version: Annotated[
-        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version.")
+        bool, typer.Option("--version", metavar="", callback=_print_version, is_eager=True, help="Show the version.")
     ] = False,
 ) -> int | None:
     """Judge a PV inverter's controller against a grid code."""
     del version  # acted on before this function is called
     if context.invoked_subcommand is not None:
         return None
-    from pvlvrt_compliance.cli.request import Request, SagRequest
+    from pvlvrt_compliance.cli.request import Request, SagRequest, prepare
 
     request = Request(
         profile=profile,
-        sag=SagRequest(sag, phases, two_phase, duration, point_on_wave, irradiance) if sag else None,
+        sag=SagRequest(sag, phases, two_phase, duration, point_on_wave, irradiance) if sag is not None else None,
         overrides={
             "frequency_hz": frequency,
             "cell_temperature_c": temperature,
@@ -137,19 +140,21 @@ def check(
         csv=csv,
         exit_zero=exit_zero,
         quiet=quiet,
-        command=("pvlvrt-check", *sys.argv[1:]),
+        command=context.obj or ("pvlvrt-check",),
     )
-    if not sag and (phases or two_phase or duration or point_on_wave is not None or irradiance is not None):
+    own = (phases, duration, point_on_wave, irradiance)
+    if sag is None and (two_phase or any(value is not None for value in own)):
         raise UsageError("--phases, --two-phase, --duration, --point-on-wave and --irradiance need --sag")
-    if sag and tests:
+    if sag is not None and tests:
         raise UsageError("--test selects from the profile's own tests; it does not go with --sag")
+    job = prepare(request)
     if list_only:
         from pvlvrt_compliance.cli.catalogue import show_tests
 
-        return show_tests(request)
+        return show_tests(job)
     from pvlvrt_compliance.cli.execute import execute
 
-    return execute(request)
+    return execute(request, job)
 
 
 check.__doc__ = _HELP

@@ -1,8 +1,9 @@
 """Run the tests, show them, write the reports."""
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import datetime
+from pathlib import Path
 from typing import Any
 
 from rich.console import Console
@@ -11,7 +12,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn
 from pvlvrt_compliance.checks.evaluate import summarise
 from pvlvrt_compliance.checks.results import EXIT_STATUS, Results, TestResult, conclude
 from pvlvrt_compliance.cli.output import WAVEFORMS, OutputFolder
-from pvlvrt_compliance.cli.request import Job, Request, prepare
+from pvlvrt_compliance.cli.request import Job, Request
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.provenance import CHOSEN
 from pvlvrt_compliance.report import console, html, junit, results_json
@@ -26,9 +27,8 @@ from pvlvrt_compliance.waveforms.csv import write_csv
 _INTERRUPTED_STATUS = 130
 
 
-def execute(request: Request) -> int:
+def execute(request: Request, job: Job) -> int:
     """Run what was asked for and return the exit status."""
-    job = prepare(request)
     run = _Run(request, job, created_at(), OutputFolder(request.output))
     try:
         run.simulate()
@@ -40,7 +40,8 @@ def execute(request: Request) -> int:
     except BaseException:
         run.output.discard()
         raise
-    _show(results, request)
+    with suppress(SystemExit):  # rich ends the program when the reader of stdout has gone; the verdict still stands
+        _show(results, request)
     return 0 if request.exit_zero else EXIT_STATUS[results.status]
 
 
@@ -148,7 +149,7 @@ def _show(results: Results, request: Request) -> None:
     screen.print(console.render(results))
     for profile in results.profiles:
         _show_doubts(screen, profile.notes)
-    screen.print(f"Report: {request.output}/report.html", soft_wrap=True)
+    screen.print(f"Report: {Path(request.output) / 'report.html'}", soft_wrap=True)
 
 
 def _show_doubts(screen: Console, notes: tuple[str, ...]) -> None:

@@ -1,6 +1,7 @@
 """Entry point: reads the command line, turns every error into one clear line and an exit status."""
 
 import sys
+import traceback
 from collections.abc import Sequence
 from typing import Any
 
@@ -8,12 +9,11 @@ import typer
 
 from pvlvrt_compliance.cli.check import check
 from pvlvrt_compliance.cli.schema import schema
-from pvlvrt_compliance.errors import PvlvrtError
+from pvlvrt_compliance.errors import PvlvrtError, UsageError
 
 USAGE_STATUS = 2
+CRASHED_STATUS = 3
 INTERRUPTED_STATUS = 130
-
-PAIRS = ("ab", "bc", "ca")
 
 # What typer raises for an option it does not know or cannot read. Its own name has moved between versions.
 _CommandLineError: Any = typer.BadParameter.__bases__[0]
@@ -33,7 +33,10 @@ def run(arguments: Sequence[str]) -> int:
     """Run the command with these arguments and return its exit status."""
     try:
         status = typer.main.get_command(app).main(
-            args=_with_explicit_pair(arguments), prog_name="pvlvrt-check", standalone_mode=False
+            args=_with_explicit_pair(arguments),
+            prog_name="pvlvrt-check",
+            standalone_mode=False,
+            obj=("pvlvrt-check", *arguments),
         )
     except _CommandLineError as error:
         return _complain(error.format_message())
@@ -42,16 +45,23 @@ def run(arguments: Sequence[str]) -> int:
     except (typer.Abort, KeyboardInterrupt):
         print("interrupted", file=sys.stderr)
         return INTERRUPTED_STATUS
-    except BrokenPipeError:
-        # The reader of stdout has gone (for instance `| head`); what it did not read is no error of ours.
-        sys.stderr.close()
+    except SystemExit:
+        # rich and typer end the program so when the reader of stdout has gone (for instance `| head`).
         return 0
+    except OSError as error:
+        return _complain(str(error))
     return status if isinstance(status, int) else 0
 
 
 def main() -> None:
     """Run as a program."""
-    sys.exit(run(sys.argv[1:]))
+    try:
+        status = run(sys.argv[1:])
+    except Exception:
+        # Python's own status for a crash is 1, which means here that a check failed.
+        traceback.print_exc()
+        status = CRASHED_STATUS
+    sys.exit(status)
 
 
 def _with_explicit_pair(arguments: Sequence[str]) -> list[str]:
@@ -59,12 +69,14 @@ def _with_explicit_pair(arguments: Sequence[str]) -> list[str]:
     given: list[str] = []
     for argument in arguments:
         flag, equals, pair = argument.partition("=")
-        if given and given[-1] == "--two-phase" and argument in PAIRS:
+        if given and given[-1] == "--two-phase" and not argument.startswith("-"):
             given += ["--phases", argument]
         elif flag == "--two-phase" and equals:
             given += ["--two-phase", "--phases", pair]
         else:
             given.append(argument)
+    if sum(argument.partition("=")[0] == "--phases" for argument in given) > 1:
+        raise UsageError("--phases: given twice (--two-phase PAIR names the phases, too)")
     return given
 
 

@@ -3,6 +3,7 @@
 import os
 import shutil
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 from pvlvrt_compliance.errors import UsageError
@@ -26,13 +27,16 @@ class OutputFolder:
     """
 
     def __init__(self, folder: str) -> None:
+        if not folder:
+            raise UsageError("--output: a folder is needed")
         self.folder = Path(folder)
-        self._existed = self.folder.is_dir()
+        self._made = [place for place in (self.folder, *self.folder.parents) if not place.exists()]
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             self.staging = Path(tempfile.mkdtemp(prefix=".unfinished-", dir=self.folder))
             (self.staging / WAVEFORMS).mkdir()
         except OSError as error:
+            self._remove_made()
             raise UsageError(f"--output {folder}: cannot be written ({error.strerror or error})") from None
 
     def write(self, name: str, content: str | bytes) -> None:
@@ -62,8 +66,13 @@ class OutputFolder:
     def discard(self) -> None:
         """Leave no trace of this run."""
         shutil.rmtree(self.staging, ignore_errors=True)
-        if not self._existed and not any(self.folder.iterdir()):
-            self.folder.rmdir()
+        self._remove_made()
+
+    def _remove_made(self) -> None:
+        """Remove the folders that were not there before, as far as they are empty."""
+        with suppress(OSError):
+            for place in self._made:
+                place.rmdir()
 
     def _replace_folder(self, new: Path, place: Path) -> None:
         if place.exists():

@@ -21,9 +21,9 @@ class SagRequest(NamedTuple):
     """The options that describe one sag, as typed."""
 
     depth: str
-    phases: str
+    phases: str | None
     two_phase: bool
-    duration: str
+    duration: str | None
     point_on_wave_deg: float | None
     irradiance_w_m2: float | None
 
@@ -84,12 +84,12 @@ def _sag_test(profile: Profile, asked: SagRequest, overrides: dict[str, float]) 
     fields: dict[str, Any] = overrides | _given(
         {"point_on_wave_deg": asked.point_on_wave_deg, "irradiance_w_m2": asked.irradiance_w_m2}
     )
-    duration = parse_duration(asked.duration, "--duration") if asked.duration else None
+    duration = parse_duration(asked.duration, "--duration") if asked.duration is not None else None
     return profile.ad_hoc_test(_sag(asked), duration, **fields)
 
 
 def _sag(asked: SagRequest) -> Sag:
-    phases = asked.phases or ("bc" if asked.two_phase else "abc")
+    phases = ("bc" if asked.two_phase else "abc") if asked.phases is None else asked.phases
     if phases not in _PHASES:
         raise UsageError(f"--phases {phases}: unknown; allowed are {', '.join(_PHASES)}{did_you_mean(phases, _PHASES)}")
     if asked.two_phase and phases not in PAIRS:

@@ -56,7 +56,7 @@ def test_the_long_axis_of_the_current_is_nominal_in_every_fault(references, logi
     order = logic(complex(V_pos * u_nom), V_neg * u_nom * cmath.exp(1j * angle), params.lvrt)
     _, i = over_a_cycle(references, V_pos, V_neg, angle, order.P_limit, order.Q_ref, params)
     positive, negative = (abs((i * np.exp(-1j * turn * ANGLES)).mean()) for turn in (1, -1))
-    if V_pos - V_neg >= 0.005:
+    if V_pos - V_neg > 0.005 + 1e-9:  # on the guard itself rounding decides
         assert positive + negative == pytest.approx(Nominal().current_ab_a, rel=1e-9)
 
 

@@ -66,3 +66,13 @@ def test_the_frequency_follows_with_the_time_constant_of_the_loop(synchronise):
     found = synchronise(vector(50.1, 0.4, {1: 398.37}), 50, gamma=5.0).w / (2 * np.pi)
     left = 50.1 - found[[round(t / T_REG) for t in (0.1, 0.2, 0.3)]]
     assert np.allclose(np.log(left[:-1] / left[1:]) / 0.1, 5, rtol=0.05)
+
+
+def test_harmonic_generators_have_the_gain_over_their_order(synchronise):
+    """Out of rest a first sample moves each cell by K/h times the sine of its turn."""
+    start = 398.37
+    found = synchronise(np.array([start + 100]), 50).state
+    # The fundamental is locked to the start, so every cell sees the difference of 100 V.
+    angle = 2 * math.pi * 50 * T_REG
+    for cell, h in zip(found[1:5], (5, 7, 11, 13), strict=True):
+        assert cell.u.real == pytest.approx(100 * math.sqrt(2) / h * math.sin(h * angle), rel=1e-3)

@@ -8,6 +8,7 @@ from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.loop import CHANNELS
 from pvlvrt_compliance.simulation.simulate import available_power_w, simulate
+from pvlvrt_compliance.space_vectors import clarke
 
 S, U, I = 500e3, np.sqrt(2) * 230, np.sqrt(2) * 500e3 / (3 * 230)  # noqa: E741 - the symbols of the nominal values
 
@@ -45,12 +46,23 @@ def test_a_record_starts_in_the_steady_state(simulated, irradiance, frequency_hz
     assert start["frequency_estimate_hz"].mean() == pytest.approx(frequency_hz, abs=1e-3)
 
 
+@pytest.mark.parametrize("frequency_hz", [50.0, 60.0, 61.0])
+def test_the_first_state_is_nearly_steady_already(simulated, frequency_hz):
+    """Without any settling the synchronisation is locked and power is within 3 % from the first sample on."""
+    run = simulated(0.0, frequency_hz=frequency_hz, settings=("simulation.settling_s=0",))
+    start = run.samples.slice(0.0, 0.2)
+    assert np.abs(start["frequency_estimate_hz"] - frequency_hz).max() < 1e-6
+    assert np.abs(instantaneous_power(start).p - S).max() < 0.03 * S
+    assert np.ptp(start["v_dc_v"]) < 3  # the finite gain of the resonators is worth 2 V
+
+
 @pytest.mark.parametrize("irradiance", [200.0, 800.0])
 def test_below_the_limit_it_starts_at_the_maximum_power_point(simulated, irradiance):
     """What reaches the grid before a sag is all that the array can give, but for the losses."""
     run = simulated(0.0, irradiance_w_m2=irradiance)
     available = available_power_w(run.scenario, Parameters())
-    assert 0.985 * available < 1e3 * run.measured.before.active_power_kw < available
+    # Half a volt that the search takes from the link within the window is 0.14 kW.
+    assert 0.985 * available < 1e3 * run.measured.before.active_power_kw < available + 200
 
 
 @pytest.mark.parametrize("phases", ["abc", "c"])
@@ -141,3 +153,26 @@ def test_a_rebuilt_loop_is_the_loop(rebuild_loop, simulated):
     again = simulate(usual.scenario, Parameters(), run=rebuild_loop(lvrt_step=lvrt_step)).segments[0]
     for name, x in usual.samples.channels.items():
         assert np.allclose(x, again[name], rtol=1e-9, atol=1e-6), name
+
+
+def test_a_modulating_signal_acts_in_the_period_after_its_own(simulated):
+    """What is computed in a period is held over the next one: the recorded currents follow from that lag only."""
+    samples = simulated(0.9, "c").samples.slice(0.32, 0.6)
+    i, m = clarke(*samples.three_phase("i")), samples["m_alpha"] + 1j * samples["m_beta"]
+    e, v = clarke(*samples.three_phase("u")), samples["v_dc_v"]
+    n = np.arange(5, len(i) - 5)
+    expected = i[n] - samples.dt_s / 0.15e-3 * (0.5 * (e[n] + e[n + 1]) + 1e-3 * i[n])
+    errors = [
+        np.abs(expected + samples.dt_s / 0.15e-3 * 2 / 3 * v[n] * m[n - lag] - i[n + 1]).mean() for lag in (0, 1, 2)
+    ]
+    assert errors[1] < 0.01
+    assert min(errors[0], errors[2]) > 0.3
+
+
+@pytest.mark.parametrize(("phases", "residuals"), [("c", (1, 1, 0.1)), ("ab", (0.1, 0.1, 1)), ("abc", (0.1, 0.1, 0.1))])
+def test_a_stiff_grid_shows_the_sag_that_was_asked_for(simulated, phases, residuals):
+    """Without impedance the terminals carry the source, zero sequence included, phase by phase."""
+    samples = simulated(0.9, phases).samples
+    assert np.array_equal(samples.three_phase("u"), samples.three_phase("u0"))
+    window = samples.slice(0.4, 0.58)
+    assert [np.abs(x).max() / U for x in window.three_phase("u")] == pytest.approx(residuals, rel=1e-3)

@@ -37,7 +37,8 @@ def test_a_trip_blocks_the_bridge_and_then_opens_the_breaker(simulated):
     assert after["connected"].max() == 0
     assert after["v_dc_v"][-1] == pytest.approx(1003.2, abs=0.5)
     peak = np.sqrt(2) * 500e3 / (3 * 230)
-    assert 1.2 <= max(np.abs(x).max() for x in samples.three_phase("i")) / peak < 1.3
+    # The relay looks at every plant step, the record at every eighth.
+    assert max(np.abs(x).max() for x in samples.three_phase("i")) / peak == pytest.approx(1.2, abs=0.05)
 
 
 def test_without_current_the_terminals_show_the_source(simulated):

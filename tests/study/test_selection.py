@@ -1,0 +1,63 @@
+"""Which tests of a profile are run."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.profile import load_profile
+from pvlvrt_compliance.study.selection import select
+
+TESTS = load_profile("iec61400-21").tests()
+IDS = [test.id for test in TESTS]
+
+
+def ids(*patterns):
+    """Ids of the tests that the patterns select."""
+    return [test.id for test in select(TESTS, patterns)]
+
+
+def test_no_pattern_selects_all():
+    """Without a pattern the whole profile is run."""
+    assert ids() == IDS
+
+
+@pytest.mark.parametrize(
+    ("patterns", "count"),
+    [(["VD3*"], 4), (["*full*"], 12), (["VD?-partial-1"], 6), (["VD[12]-full-1"], 2), (["*"], 27), (["paper-*"], 3)],
+)
+def test_shell_patterns(patterns, count):
+    """Star, question mark and brackets mean what they mean in a shell."""
+    assert len(ids(*patterns)) == count
+
+
+def test_patterns_add_up():
+    """Several patterns select what any of them selects, each test once, in the profile's order."""
+    assert ids("VD2-full-1", "VD1-full-1", "VD1-full-?") == ["VD1-full-1", "VD1-full-2", "VD2-full-1"]
+
+
+@settings(deadline=None)
+@given(st.lists(st.sampled_from(IDS), min_size=1, unique=True))
+def test_exact_ids_select_themselves(names):
+    """Any set of ids selects exactly these, whatever their order and case."""
+    assert ids(*(name.upper() for name in names)) == [name for name in IDS if name in names]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "hint"),
+    [
+        ("VD3-ful-1", 'did you mean "VD3-full-1"'),
+        ("xyz", "the profile has VD1-full-1 to paper-phase-c-50"),
+        ("", "no test of this name"),
+    ],
+)
+def test_pattern_that_matches_nothing(pattern, hint):
+    """Every pattern must match, even beside one that does; the near misses are named."""
+    with pytest.raises(UsageError, match=hint):
+        select(TESTS, ["VD1*", pattern])
+
+
+def test_profile_without_tests():
+    """A pattern on a profile without tests is refused without a list of ids."""
+    with pytest.raises(UsageError, match="--test VD1: no test of this name"):
+        select([], ["VD1"])
