@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.space_vectors import SQRT2_3, SQRT3_2
 
 
 class Rotation(NamedTuple):
@@ -11,6 +12,33 @@ class Rotation(NamedTuple):
 
     c: float  # cosine of w T
     s: float  # sine of w T
+
+
+class Phases(NamedTuple):
+    """One number a phase."""
+
+    a: float
+    b: float
+    c: float
+
+
+@kernel
+def phases_of(z: complex) -> Phases:
+    """Phase quantities of a vector, without zero sequence: the inverse of eq (1)."""
+    along, across = SQRT2_3 * z.real, SQRT2_3 * SQRT3_2 * z.imag
+    return Phases(a=along, b=-0.5 * along + across, c=-0.5 * along - across)
+
+
+@kernel
+def vector_of(x: Phases) -> complex:
+    """Vector of phase quantities, eq (1); their zero sequence drops out."""
+    return complex(SQRT2_3 * (x.a - 0.5 * x.b - 0.5 * x.c), SQRT2_3 * SQRT3_2 * (x.b - x.c))
+
+
+@kernel
+def dot(y: complex, z: complex) -> float:
+    """Inner product of two vectors, Re(y conj(z)): of voltage and current, the power."""
+    return y.real * z.real + y.imag * z.imag
 
 
 @kernel

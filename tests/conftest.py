@@ -96,6 +96,7 @@ def bridge_blocked(x, m, e, u_min, p):
         trip=UNDERVOLTAGE if after.trip == NO_TRIP and after.relay.t_low > 0 else after.trip,
         t_trip=0.0,
         closed=True,
+        mean=after.mean,
     )
 
 
@@ -111,6 +112,7 @@ def not_a_number(x, m, source, t, p, tables):
         trip=after.trip,
         t_trip=after.t_trip,
         closed=after.closed,
+        mean=after.mean,
     )
 
 

@@ -23,7 +23,7 @@ ALLOWED = {
     "space_vectors": set(),
     "resources": {"errors"},
     "kernel": set(),
-    "vectors": {"kernel"},
+    "vectors": {"kernel", "space_vectors"},
     "sogi": {"kernel", "vectors"},
     "waveforms": COMMON,
     "scenario": COMMON,

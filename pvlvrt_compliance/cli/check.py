@@ -84,6 +84,12 @@ def check(
         float | None,
         typer.Option("--xr", metavar="RATIO", help="X/R of the grid. Default 10.", rich_help_panel=_SETTING),
     ] = None,
+    fidelity: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LEVEL", help="Inverter averaged (default) or switched, slower.", rich_help_panel=_SETTING
+        ),
+    ] = None,
     assignments: Annotated[
         list[str] | None,
         typer.Option(
@@ -134,7 +140,7 @@ def check(
             "scr": scr,
             "xr": xr,
         },
-        assignments=tuple(assignments or ()),
+        assignments=(*(assignments or ()), *([f"simulation.fidelity={fidelity}"] if fidelity is not None else ())),
         patterns=tuple(tests or ()),
         output=output,
         csv=csv,

@@ -24,6 +24,14 @@ def line_step(i: complex, u_inv: complex, e: complex, p: LineParams) -> complex:
 
 
 @kernel
+def line_part(i: complex, u_inv: complex, e: complex, share: float, p: LineParams) -> complex:
+    """Current after a share of a plant step (A), by the same exact solution under constant voltages (V)."""
+    exponent = math.log(p.decay)
+    part = math.expm1(share * exponent) / math.expm1(exponent) if exponent < 0.0 else share
+    return scaled(math.exp(share * exponent), i) + scaled(part * p.gain, u_inv - e)
+
+
+@kernel
 def pcc_voltage(i: complex, u_inv: complex, e: complex, p: LineParams) -> complex:
     """Voltage at the PCC (V): u_PCC = e + R_g i + L_g di/dt, with di/dt from the whole line."""
     return scaled(p.k_u, u_inv) + scaled(p.k_e, e) + scaled(p.k_i, i)

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.plant.carrier import Pulses, pulses_of
 from pvlvrt_compliance.plant.grid import (
     GridTable,
     Source,
@@ -12,7 +13,7 @@ from pvlvrt_compliance.plant.grid import (
     step_later,
     zero_sequence,
 )
-from pvlvrt_compliance.plant.inverter import Bridge, freewheeling, limit_modulation, modulated
+from pvlvrt_compliance.plant.inverter import SWITCHED, Bridge, freewheeling, limit_modulation, modulated
 from pvlvrt_compliance.plant.line import LineParams, line_step, pcc_voltage
 from pvlvrt_compliance.plant.protection import (
     NO_TRIP,
@@ -23,6 +24,7 @@ from pvlvrt_compliance.plant.protection import (
     undervoltage_limit,
 )
 from pvlvrt_compliance.plant.pv_array import PvParams, array_current, diode_voltage
+from pvlvrt_compliance.plant.switched_bridge import DeviceParams, PeriodMean, added_to_mean, switched_flow
 from pvlvrt_compliance.vectors import scaled
 
 
@@ -32,11 +34,13 @@ class PlantParams(NamedTuple):
     pv: PvParams
     line: LineParams
     protection: ProtectionParams
+    devices: DeviceParams
     C: float  # DC-link capacitance (F)
     G: float  # irradiance, in units of 1000 W/m2 (-)
     t_breaker: float  # after a trip the breaker parts by then, though current may still flow (s)
     T_S: float  # plant step (s)
-    ratio: int  # plant steps in a control period (-)
+    ratio: int  # plant steps in a control period, which is also the carrier's (-)
+    fidelity: int  # AVERAGED or SWITCHED
 
 
 class PlantTables(NamedTuple):
@@ -57,6 +61,18 @@ class PlantState(NamedTuple):
     trip: int  # code of the trip (-)
     t_trip: float  # time since the trip (s)
     closed: bool  # breaker
+    mean: PeriodMean  # of the switched bridge; the averaged one leaves it alone
+
+
+class Flow(NamedTuple):
+    """Where a plant step leads line, link and array to, before the relays look."""
+
+    i: complex  # inverter current (A)
+    v_dc: float  # DC-link voltage (V)
+    x_pv: float  # junction voltage of a module (V)
+    i_pv: float  # array current (A)
+    u_inv: complex  # inverter voltage, mean over the step (V)
+    i_mid: complex  # current, mean over the step (A)
 
 
 class Observed(NamedTuple):
@@ -88,16 +104,25 @@ def terminal_voltage(x: PlantState, i: complex, u_inv: complex, e: complex, p: P
 
 
 @kernel
-def observe(x: PlantState, m: complex, source: Source, p: PlantParams) -> Observed:
-    """Voltages at the instant of a state and its source, under the modulating signal that has led to it."""
-    e = source_voltage(source)
-    u_inv = bridge(limit_modulation(m), x.i, x.v_dc, x.trip != NO_TRIP).u
-    return Observed(u_ab=terminal_voltage(x, x.i, u_inv, e, p), u0_ab=e, u_zero=zero_sequence(source))
+def inverter_voltage(x: PlantState, m: complex, p: PlantParams) -> complex:
+    """Inverter voltage (V) that sensors see: of the switched bridge the mean over the period that has ended."""
+    if p.fidelity == SWITCHED and x.trip == NO_TRIP:
+        return x.mean.u
+    return bridge(limit_modulation(m), x.i, x.v_dc, x.trip != NO_TRIP).u
 
 
 @kernel
-def plant_step(x: PlantState, m: complex, e: complex, u_min: float, p: PlantParams) -> PlantState:
-    """Advance by one plant step under a constant modulating signal; ``e`` is the source (V) at the middle of the step.
+def observe(x: PlantState, m: complex, source: Source, p: PlantParams) -> Observed:
+    """Voltages at the instant of a state and its source, under the modulating signal that has led to it."""
+    e = source_voltage(source)
+    return Observed(
+        u_ab=terminal_voltage(x, x.i, inverter_voltage(x, m, p), e, p), u0_ab=e, u_zero=zero_sequence(source)
+    )
+
+
+@kernel
+def averaged_flow(x: PlantState, m: complex, e: complex, p: PlantParams) -> Flow:
+    """Advance line, link and array by one plant step under the averaged or the blocked bridge.
 
     Second order: DC voltage and source are taken at the middle of the step, the line is solved exactly over it.
     """
@@ -110,19 +135,48 @@ def plant_step(x: PlantState, m: complex, e: complex, u_min: float, p: PlantPara
     x_pv = diode_voltage(v_mid, p.G, x.x_pv, p.pv)
     i_pv = array_current(v_mid, x_pv, p.pv)
     v_dc = max(x.v_dc + per_farad * (i_pv - bridge(m, i_mid, v_mid, blocked).i_dc), 0.0)
-    u_pcc = terminal_voltage(x, i_mid, u_inv, e, p)
-    relay, trip = relays_step(x.relay, u_pcc, i, v_dc, u_min, p.protection, p.T_S)
+    return Flow(i=i, v_dc=v_dc, x_pv=x_pv, i_pv=i_pv, u_inv=u_inv, i_mid=i_mid)
+
+
+@kernel
+def after_relays(x: PlantState, flow: Flow, mean: PeriodMean, e: complex, u_min: float, p: PlantParams) -> PlantState:
+    """State after a plant step: where it has led to, what the relays and the breaker make of it."""
+    blocked = x.trip != NO_TRIP
+    u_pcc = terminal_voltage(x, flow.i_mid, flow.u_inv, e, p)
+    relay, trip = relays_step(x.relay, u_pcc, flow.i, flow.v_dc, u_min, p.protection, p.T_S)
     t_trip = x.t_trip + p.T_S if blocked else 0.0
     return PlantState(
-        i=i,
-        v_dc=v_dc,
-        x_pv=x_pv,
-        i_pv=i_pv,
+        i=flow.i,
+        v_dc=flow.v_dc,
+        x_pv=flow.x_pv,
+        i_pv=flow.i_pv,
         relay=relay,
         trip=x.trip if blocked else trip,
         t_trip=t_trip,
-        closed=x.closed and not (blocked and (i == 0 or t_trip > p.t_breaker)),
+        closed=x.closed and not (blocked and (flow.i == 0 or t_trip > p.t_breaker)),
+        mean=mean,
     )
+
+
+@kernel
+def plant_step(x: PlantState, m: complex, e: complex, u_min: float, p: PlantParams) -> PlantState:
+    """Advance by one plant step under a constant modulating signal; ``e`` is the source (V) at its middle."""
+    return after_relays(x, averaged_flow(x, m, e, p), x.mean, e, u_min, p)
+
+
+@kernel
+def switched_plant_step(x: PlantState, pulses: Pulses, n: int, e: complex, u_min: float, p: PlantParams) -> PlantState:
+    """Advance by plant step ``n`` of a carrier period; ``e`` is the source (V) at the middle of the step.
+
+    Second order: the link first feels the array's current of the step before, which is then corrected by its own.
+    """
+    found = switched_flow(x.i, x.v_dc, x.i_pv, e, n, pulses, p.line, p.C, p.T_S, p.devices)
+    v_mid = 0.5 * (x.v_dc + found.v_dc)
+    x_pv = diode_voltage(v_mid, p.G, x.x_pv, p.pv)
+    i_pv = array_current(v_mid, x_pv, p.pv)
+    v_dc = found.v_dc + p.T_S / p.C * (i_pv - x.i_pv)
+    flow = Flow(i=found.i, v_dc=v_dc, x_pv=x_pv, i_pv=i_pv, u_inv=found.mean.u, i_mid=found.mean.i)
+    return after_relays(x, flow, added_to_mean(x.mean, found.mean, n, p.ratio), e, u_min, p)
 
 
 @kernel
@@ -134,6 +188,8 @@ def advance(x: PlantState, m: complex, source: Source, t: float, p: PlantParams,
     """
     m = limit_modulation(m)
     u_min = undervoltage_limit(x.relay, p.protection, tables.undervoltage)
+    switched = p.fidelity == SWITCHED
+    pulses = pulses_of(m, p.ratio * p.T_S)
     source = half_step_later(source)
     for n in range(p.ratio):
         t_mid = t + (n + 0.5) * p.T_S
@@ -141,5 +197,9 @@ def advance(x: PlantState, m: complex, source: Source, t: float, p: PlantParams,
             source = step_later(source)
         if t_mid >= source.t_end:
             source = source_at(t_mid, source.k, tables.grid)
-        x = plant_step(x, m, source_voltage(source), u_min, p)
+        e = source_voltage(source)
+        if switched and x.trip == NO_TRIP:
+            x = switched_plant_step(x, pulses, n, e, u_min, p)
+        else:
+            x = plant_step(x, m, e, u_min, p)
     return x

@@ -16,7 +16,7 @@ from pvlvrt_compliance.control.controller import (
 from pvlvrt_compliance.kernel import cached_kernel, kernel
 from pvlvrt_compliance.plant.grid import source_at
 from pvlvrt_compliance.plant.plant import Observed, PlantParams, PlantState, PlantTables, advance, observe
-from pvlvrt_compliance.space_vectors import SQRT2_3, SQRT3_2
+from pvlvrt_compliance.vectors import phases_of
 
 COMPLETED, NOT_FINITE = range(2)
 """How a run ended."""
@@ -41,10 +41,8 @@ class Outcome(NamedTuple):
 @kernel
 def record_phases(row: NDArray[np.float64], column: int, ab: complex, zero: float) -> None:
     """Write the three phases of a vector, zero sequence included, from a column on."""
-    along, across = SQRT2_3 * ab.real, SQRT2_3 * SQRT3_2 * ab.imag
-    row[column] = along + zero
-    row[column + 1] = -0.5 * along + across + zero
-    row[column + 2] = -0.5 * along - across + zero
+    x = phases_of(ab)
+    row[column], row[column + 1], row[column + 2] = x.a + zero, x.b + zero, x.c + zero
 
 
 @kernel

@@ -17,10 +17,11 @@ from pvlvrt_compliance.control.mppt import MpptParams
 from pvlvrt_compliance.kernel import plain
 from pvlvrt_compliance.plant import line, pv_array
 from pvlvrt_compliance.plant.grid import GridTable
-from pvlvrt_compliance.plant.inverter import K_PWM, M_MAX
+from pvlvrt_compliance.plant.inverter import FIDELITIES, K_PWM, M_MAX, SWITCHED
 from pvlvrt_compliance.plant.plant import PlantParams, PlantState, PlantTables
 from pvlvrt_compliance.plant.protection import NO_TRIP, ProtectionParams, UndervoltageCurve, relays_at_rest
 from pvlvrt_compliance.plant.pv_array import STC_IRRADIANCE, PvParams
+from pvlvrt_compliance.plant.switched_bridge import DeviceParams, PeriodMean
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.sogi import in_steady_state
@@ -28,6 +29,7 @@ from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.vectors import rotation
 
 _SQRT3_2 = math.sqrt(1.5)  # length of a power-invariant space vector per unit of phase amplitude
+_SWITCHED_REFERENCE_VA = 800.0 * 1000.0  # voltage and current that the switching energy is given for (V A)
 _FREQUENCY_BAND_HZ = 5.0  # default setting of the frequency relay around nominal
 
 
@@ -104,6 +106,16 @@ def protection_params(parameters: Parameters, nominal: Nominal) -> ProtectionPar
     )
 
 
+def device_params(parameters: Parameters) -> DeviceParams:
+    """Dead time and losses of the switched inverter."""
+    p = parameters.plant
+    return DeviceParams(
+        t_dead=1e-6 * p.dead_time_us,
+        v_drop=p.device_drop_v,
+        t_loss=1e-3 * p.switching_energy_mj / _SWITCHED_REFERENCE_VA,
+    )
+
+
 def plant_params(parameters: Parameters, scenario: Scenario) -> PlantParams:
     """Parameters of the plant in one scenario."""
     p = parameters.plant
@@ -111,16 +123,21 @@ def plant_params(parameters: Parameters, scenario: Scenario) -> PlantParams:
     T_S = plant_step_s(parameters)
     Z = nominal.impedance_ohm / scenario.scr if scenario.scr is not None else 0.0
     R_g = Z / math.hypot(1, scenario.xr)
+    fidelity = FIDELITIES.index(parameters.simulation.fidelity)
+    # One device conducts in every leg at any time, so their resistance is the line's.
+    R = p.filter_resistance_ohm + (p.device_resistance_ohm if fidelity == SWITCHED else 0.0)
     L_g = R_g * scenario.xr / (2 * math.pi * nominal.frequency_hz)
     return PlantParams(
         pv=pv_params(parameters, scenario),
-        line=line.design(p.filter_inductance_h, p.filter_resistance_ohm, L_g, R_g, T_S),
+        line=line.design(p.filter_inductance_h, R, L_g, R_g, T_S),
         protection=protection_params(parameters, nominal),
+        devices=device_params(parameters),
         C=p.dc_link_capacitance_f,
         G=scenario.irradiance_w_m2 / STC_IRRADIANCE,
         t_breaker=p.breaker_opening_s,
         T_S=T_S,
         ratio=parameters.simulation.control_ratio,
+        fidelity=fidelity,
     )
 
 
@@ -202,6 +219,7 @@ def steady_state(
             trip=NO_TRIP,
             t_trip=0.0,
             closed=True,
+            mean=PeriodMean(u=K_PWM * v_dc * m, i=i),
         ),
         controller=ControllerState(
             sync=msogi_fll.locked(u, w),

@@ -11,6 +11,7 @@ from pvlvrt_compliance.plant.grid import source_at
 from pvlvrt_compliance.plant.plant import PlantState, advance
 from pvlvrt_compliance.plant.protection import NO_TRIP, relays_at_rest, relays_step, undervoltage_limit
 from pvlvrt_compliance.plant.pv_array import current_at
+from pvlvrt_compliance.plant.switched_bridge import PeriodMean
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
@@ -46,7 +47,17 @@ def open_loop() -> Callable[..., tuple[np.ndarray, np.ndarray]]:
         i_pv = current_at(v0, 1000 * p.G, p.pv)
         x_pv = v0 / p.pv.n_series + p.pv.R_s * i_pv / p.pv.n_parallel
         relay = relays_at_rest(complex(p.protection.u_nom), p.protection.w_nom)
-        start = PlantState(i=i0, v_dc=v0, x_pv=x_pv, i_pv=i_pv, relay=relay, trip=NO_TRIP, t_trip=0.0, closed=True)
+        start = PlantState(
+            i=i0,
+            v_dc=v0,
+            x_pv=x_pv,
+            i_pv=i_pv,
+            relay=relay,
+            trip=NO_TRIP,
+            t_trip=0.0,
+            closed=True,
+            mean=PeriodMean(u=0j, i=i0),
+        )
         deaf = p._replace(protection=p.protection._replace(i_max=1e12, v_dc_max=1e12))
         i, v_dc = np.empty(len(m), complex), np.empty(len(m))
         _advance(start, np.asarray(m, complex), 0.0, deaf, tables, i, v_dc)
