@@ -95,7 +95,7 @@ class _Run:
             return
         self.output.write("results.json", results_json.render(self.results()))
         place = self.output.keep_interrupted()
-        log.print(f"interrupted; {count} were finished and are kept in {place}", soft_wrap=True)
+        log.print(f"interrupted; {count} were finished and are kept in {place}", soft_wrap=not log.is_terminal)
 
     def _keep(self, result: TestResult, waveforms: Waveforms, scenario: Scenario, nominal: Nominal) -> TestResult:
         stem = self.output.waveforms / result.id
@@ -157,6 +157,7 @@ def _show_doubts(screen: Console, notes: tuple[str, ...]) -> None:
     chosen = [note for note in notes if f": {CHOSEN} (" in note]
     for note in notes:
         if note not in chosen:
-            screen.print(f"Not verified: {note}", soft_wrap=True)
+            # In a file a note stays one line; a terminal would cut it in the middle of a word.
+            screen.print(f"Not verified: {note}", soft_wrap=not screen.is_terminal)
     if chosen:
         screen.print(f"Not verified: {len(chosen)} numbers that this project has chosen (the report lists them)")

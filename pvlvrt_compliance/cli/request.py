@@ -60,7 +60,7 @@ def prepare(request: Request) -> Job:
         When the profile, an option or the selection cannot be used.
     """
     if not request.profile:
-        raise UsageError(f"--profile is missing; known profiles: {', '.join(known_profiles())}")
+        raise UsageError(f"--profile is missing; known profiles: {', '.join(known_profiles())} (--help has an example)")
     profile = load_profile(request.profile)
     parameters = parameters_from(request.assignments)
     overrides = _given(request.overrides)
