@@ -11,7 +11,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn
 
 from pvlvrt_compliance.checks.evaluate import summarise
 from pvlvrt_compliance.checks.results import EXIT_STATUS, Results, TestResult, conclude
-from pvlvrt_compliance.cli.output import WAVEFORMS, OutputFolder
+from pvlvrt_compliance.cli.output import RESULTS, WAVEFORMS, OutputFolder
 from pvlvrt_compliance.cli.request import Job, Request
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.provenance import CHOSEN
@@ -80,7 +80,7 @@ class _Run:
     def write_reports(self) -> Results:
         """Stage all reports."""
         results = self.results()
-        self.output.write("results.json", results_json.render(results))
+        self.output.write(RESULTS, results_json.render(results))
         self.output.write("junit.xml", junit.render(results))
         self.output.write("report.html", html.render(results, self.figures))
         return results
@@ -93,7 +93,7 @@ class _Run:
             self.output.discard()
             log.print(f"interrupted; {count} were finished, nothing was written")
             return
-        self.output.write("results.json", results_json.render(self.results()))
+        self.output.write(RESULTS, results_json.render(self.results()))
         place = self.output.keep_interrupted()
         log.print(f"interrupted; {count} were finished and are kept in {place}", soft_wrap=not log.is_terminal)
 
