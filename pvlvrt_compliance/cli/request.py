@@ -14,6 +14,16 @@ from pvlvrt_compliance.scenario.sag import PAIRS, Sag
 from pvlvrt_compliance.study.selection import select
 from pvlvrt_compliance.units import parse_duration, parse_fraction
 
+# Options by the field of the scenario that they set: a message names what the user has typed.
+_OPTIONS = {
+    "frequency_hz": "--frequency",
+    "cell_temperature_c": "--temperature",
+    "scr": "--scr",
+    "xr": "--xr",
+    "irradiance_w_m2": "--irradiance",
+    "point_on_wave_deg": "--point-on-wave",
+    "duration_s": "--duration",
+}
 _PHASES = ("abc", "a", "b", "c", *PAIRS)
 
 
@@ -35,6 +45,7 @@ class Request(NamedTuple):
     sag: SagRequest | None
     overrides: dict[str, float | None]
     assignments: tuple[str, ...]
+    fidelity: str | None
     patterns: tuple[str, ...]
     output: str
     csv: bool
@@ -60,17 +71,33 @@ def prepare(request: Request) -> Job:
         When the profile, an option or the selection cannot be used.
     """
     if not request.profile:
-        raise UsageError(f"--profile is missing; known profiles: {', '.join(known_profiles())}")
+        raise UsageError(f"--profile is missing; known profiles: {', '.join(known_profiles())} (--help has an example)")
     profile = load_profile(request.profile)
-    parameters = parameters_from(request.assignments)
-    overrides = _given(request.overrides)
-    if request.sag is not None:
-        tests: tuple[TestCase, ...] = (_sag_test(profile, request.sag, overrides),)
-    else:
-        tests = select(profile.tests(**overrides), request.patterns)
+    parameters = _parameters(request)
+    try:
+        tests = _tests(profile, request)
+    except UsageError as error:
+        field, colon, rest = str(error).partition(":")
+        raise UsageError(_OPTIONS.get(field, field) + colon + rest) from None
     if not tests:
         raise UsageError(f"{profile.id}: the profile has no tests of its own; give one, for instance --sag 90%")
     return Job(profile, tests, parameters)
+
+
+def _parameters(request: Request) -> Parameters:
+    if request.fidelity is None:
+        return parameters_from(request.assignments)
+    try:
+        return parameters_from((*request.assignments, f"simulation.fidelity={request.fidelity}"))
+    except UsageError as error:
+        raise UsageError(str(error).replace("--set simulation.fidelity:", "--fidelity:")) from None
+
+
+def _tests(profile: Profile, request: Request) -> tuple[TestCase, ...]:
+    overrides = _given(request.overrides)
+    if request.sag is not None:
+        return (_sag_test(profile, request.sag, overrides),)
+    return select(profile.tests(**overrides), request.patterns)
 
 
 def _given(fields: dict[str, float | None]) -> dict[str, float]:

@@ -166,18 +166,23 @@ def parameters_from(assignments: Iterable[str]) -> Parameters:
             raise UsageError(f"--set {name}: given twice")
         groups[group][key] = _value(name, text)
     try:
-        return Parameters.model_validate(groups)
+        # As JSON and strict: a list is a tuple there, but neither true nor "1.2" is a number.
+        return Parameters.model_validate_json(json.dumps(groups), strict=True)
     except ValidationError as error:
         raise UsageError("; ".join(_problem(e["loc"], e["msg"]) for e in error.errors())) from None
 
 
 def _value(name: str, text: str) -> Any:
     try:
-        return json.loads(text)
-    except json.JSONDecodeError:
+        return json.loads(text, parse_constant=_refuse)
+    except (ValueError, RecursionError):
         if _takes_words(name):
             return text.strip()
         raise UsageError(f"--set {name}: {text!r} is not a value; write a number, true, false, null or [..]") from None
+
+
+def _refuse(constant: str) -> None:
+    raise ValueError(f"{constant} is not a number that can be used")
 
 
 def _problem(location: tuple[int | str, ...], message: str) -> str:
