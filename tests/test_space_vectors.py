@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pvlvrt_compliance import vectors
 from pvlvrt_compliance.space_vectors import ROTATION_120, clarke, fortescue, phases
 
 reals = st.floats(-1e4, 1e4)
@@ -74,3 +75,13 @@ def test_scalars_and_arrays_are_one_formula():
     """The transform of arrays is that of their elements."""
     a, b, c = np.array([1.0, 2.0]), np.array([-3.0, 0.5]), np.array([0.25, 4.0])
     assert list(clarke(a, b, c)) == pytest.approx([clarke(a[k], b[k], c[k]) for k in range(2)])
+
+
+@given(reals, reals, reals)
+@settings(deadline=None)
+def test_the_compiled_forms_are_the_clarke_transform(in_python, a, b, c):
+    """Vector of three phases and phases of a vector, as kernels use them: eq (1), and its inverse without zero."""
+    z = in_python(vectors.vector_of)(vectors.Phases(a, b, c))
+    assert z == pytest.approx(complex(clarke(a, b, c)), abs=1e-9)
+    zero = (a + b + c) / 3
+    assert in_python(vectors.phases_of)(z) == pytest.approx((a - zero, b - zero, c - zero), abs=1e-9)

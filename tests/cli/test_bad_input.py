@@ -48,6 +48,11 @@ BAD = {
     ),
     "parameter without value": ((*MAIN, "--set", "controller.sogi_gain"), "write --set group.name=value"),
     "parameter out of range": ((*MAIN, "--set", "plant.filter_inductance_h=0"), "--set plant.filter_inductance_h: "),
+    "unknown fidelity": ((*MAIN, "--fidelity", "exact"), "--fidelity: Input should be 'averaged' or 'switched'"),
+    "fidelity twice": (
+        (*MAIN, "--fidelity", "switched", "--set", "simulation.fidelity=averaged"),
+        "--fidelity: given twice",
+    ),
     "unknown option": ((*MAIN, "--bogus"), "No such option: --bogus"),
     "unknown command": ((*MAIN, "extra"), "No such command 'extra'"),
     "sag options without sag": ((*MAIN[:2], "--phases", "a"), "need --sag"),

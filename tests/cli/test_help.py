@@ -26,7 +26,18 @@ def test_help_fits_80_columns(command):
     "option",
     [
         *("--profile", "--sag", "--phases", "--two-phase", "--duration", "--point-on-wave", "--irradiance"),
-        *("--frequency", "--temperature", "--scr", "--xr", "--set", "--test", "--list", "--output", "--csv"),
+        *(
+            "--frequency",
+            "--temperature",
+            "--scr",
+            "--xr",
+            "--fidelity",
+            "--set",
+            "--test",
+            "--list",
+            "--output",
+            "--csv",
+        ),
         *("--exit-zero", "--quiet", "--version"),
     ],
 )

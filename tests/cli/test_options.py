@@ -175,6 +175,17 @@ def test_set(judge):
     assert ended.status == 1
 
 
+def test_fidelity(judge):
+    """--fidelity switched is simulation.fidelity: it stands in the report, and the losses show in the DC voltage."""
+    _, averaged = judge("--sag", "0%")
+    for options in (("--fidelity", "switched"), ("--set", "simulation.fidelity=switched")):
+        ended, reports = judge("--sag", "0%", *options)
+        assert ended.status == 0
+        assert reports.json["provenance"]["parameters"]["simulation"]["fidelity"] == "switched"
+        before = [x.test["measurements"]["before"]["dc_voltage_mean_v"] for x in (averaged, reports)]
+        assert before[0] - before[1] == pytest.approx(3.3, abs=0.3)
+
+
 def test_simulation_rates_are_parameters(judge):
     """Half the plant step at twice the ratio is the same control period, and the same physics."""
     _, coarse = judge("--sag", "90%")

@@ -20,11 +20,16 @@ from pvlvrt_compliance.simulation.translate import plant_params, plant_tables
 
 @pytest.fixture(scope="session")
 def plant() -> Callable[..., tuple[Any, Any]]:
-    """Build ``plant(ratio, **scenario) -> (params, tables)`` at a control period of 40.9568 us, without a sag."""
+    """Build ``plant(ratio, fidelity, devices, **scenario) -> (params, tables)``, without a sag.
 
-    def make(ratio: int = 8, **scenario: Any) -> tuple[Any, Any]:
-        simulation = {"plant_step_us": 40.9568 / ratio, "control_ratio": ratio}
-        parameters = Parameters.model_validate({"simulation": simulation})
+    The control period is 40.9568 us; ``devices`` holds parameters of the plant by name.
+    """
+
+    def make(
+        ratio: int = 8, fidelity: str = "averaged", devices: dict[str, float] | None = None, **scenario: Any
+    ) -> tuple[Any, Any]:
+        simulation = {"plant_step_us": 40.9568 / ratio, "control_ratio": ratio, "fidelity": fidelity}
+        parameters = Parameters.model_validate({"simulation": simulation, "plant": devices or {}})
         scenario = Scenario(**({"sag": Sag(depth=0), "duration_s": 0.5} | scenario))
         return plant_params(parameters, scenario), plant_tables(parameters, scenario)
 

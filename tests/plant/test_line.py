@@ -45,6 +45,19 @@ def test_the_voltage_between_filter_and_grid(in_python, i, u_inv, e, L_g, R_g):
     assert found == pytest.approx(u_inv - R * i - L * slope, abs=1e-9)
 
 
+@given(st.sampled_from([0.0, 1e-3, 0.5]), st.lists(st.floats(0, 1), min_size=1, max_size=5))
+@settings(deadline=None)
+def test_parts_of_a_step_are_the_step(in_python, resistance, shares):
+    """A step cut into parts of any lengths, under the same voltages, ends where the whole one ends."""
+    p = line.design(L, resistance, 5e-5, 0.0, T_S)
+    i = 100 + 20j
+    for share in (*shares, max(1 - sum(shares), 0.0)):
+        i = in_python(line.line_part)(i, 480 + 10j, 470j, share, p)
+    T = T_S * max(sum(shares), 1.0)
+    whole = in_python(line.line_step)(100 + 20j, 480 + 10j, 470j, line.design(L, resistance, 5e-5, 0.0, T))
+    assert i == pytest.approx(whole, rel=1e-9)
+
+
 def test_a_stiff_grid_is_the_source_itself(in_python):
     """Without grid impedance neither current nor inverter move the voltage at the terminals."""
     p = line.design(L, R, 0.0, 0.0, T_S)

@@ -62,10 +62,12 @@ def test_numbers_are_read_exactly(value):
         ("protection.frequency_min_hz=null", None),
         ("protection.undervoltage_curve=[[0, 0.5], [1, 0.85]]", ((0.0, 0.5), (1.0, 0.85))),
         (" plant.modules_in_series =21", 21),
+        ("simulation.fidelity=switched", "switched"),
+        ('simulation.fidelity= "switched"', "switched"),
     ],
 )
 def test_values_as_in_json(assignment, value):
-    """True, null, lists and numbers are written as in JSON."""
+    """True, null, lists and numbers are written as in JSON; a word that is one of several needs no quotes."""
     parameters = parameters_from([assignment])
     assert value_of(parameters, assignment.partition("=")[0].strip()) == value
 
@@ -88,6 +90,8 @@ def test_several_assignments_in_several_groups():
         ("controller.sogi_gain", "write --set group.name=value"),
         ("controller.sogi_gain=", "'' is not a value"),
         ("controller.sogi_gain=fast", "'fast' is not a value; write a number, true, false, null or"),
+        ("simulation.fidelity=exact", "--set simulation.fidelity: .*'averaged' or 'switched'"),
+        ("simulation.fidelity=1", "--set simulation.fidelity: "),
         ("controller.sogi_gain=0", "--set controller.sogi_gain: .*greater than 0"),
         ("controller.sogi_gain=NaN", "is not a value"),
         ("controller.sogi_gain=true", "valid number"),
