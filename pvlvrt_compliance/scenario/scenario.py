@@ -2,6 +2,7 @@
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from pvlvrt_compliance.scenario.events import Event
 from pvlvrt_compliance.scenario.sag import Sag
 
 FREQUENCY_MIN_HZ = 45.0
@@ -34,6 +35,7 @@ class Scenario(BaseModel):
     xr: float = Field(default=10.0, gt=0, description="X/R of the grid impedance")
     before_s: float = Field(default=0.3, ge=0.25, le=60, description="record before the sag")
     after_s: float = Field(default=1.1, ge=0.1, le=120, description="record after clearing")
+    events: tuple[Event, ...] = Field(default=(), description="what happens besides; times from the start of the sag")
 
     @property
     def start_s(self) -> float:
