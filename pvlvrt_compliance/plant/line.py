@@ -33,9 +33,7 @@ class LineTable(NamedTuple):
 @kernel
 def line_at(k: int, table: LineTable) -> LineParams:
     """Line that goes with an entry of the grid's breakpoints."""
-    return LineParams(
-        decay=table.decay[k], gain=table.gain[k], k_u=table.k_u[k], k_e=table.k_e[k], k_i=table.k_i[k]
-    )
+    return LineParams(decay=table.decay[k], gain=table.gain[k], k_u=table.k_u[k], k_e=table.k_e[k], k_i=table.k_i[k])
 
 
 @kernel

@@ -15,14 +15,6 @@ from pvlvrt_compliance.plant.grid import (
     step_later,
     zero_sequence,
 )
-    GridTable,
-    Source,
-    half_step_later,
-    source_at,
-    source_voltage,
-    step_later,
-    zero_sequence,
-)
 from pvlvrt_compliance.plant.inverter import Bridge, freewheeling, limit_modulation, modulated
 from pvlvrt_compliance.plant.line import LineParams, LineTable, line_at, line_step, pcc_voltage
 from pvlvrt_compliance.plant.protection import (

@@ -29,7 +29,7 @@ class VoltageProfile(_Event):
     """Factor on all phase voltages: straight lines between points, the last level held. Ramps, steps and swells."""
 
     kind: Literal["voltage_profile"] = "voltage_profile"
-    points: tuple[tuple[Time, Level], ...] = Field(min_length=1, description="(s, pu); a step is two points at one time")
+    points: tuple[tuple[Time, Level], ...] = Field(min_length=1, description="(s, pu); a step: two at one time")
 
     @model_validator(mode="after")
     def _in_order(self) -> Self:
@@ -103,13 +103,6 @@ class Irradiance(_Event):
 
 
 Event = Annotated[
-    FurtherSag
-    | VoltageProfile
-    | PhaseJump
-    | FrequencyStep
-    | FrequencyRamp
-    | GridStrength
-    | Harmonic
-    | Irradiance,
+    FurtherSag | VoltageProfile | PhaseJump | FrequencyStep | FrequencyRamp | GridStrength | Harmonic | Irradiance,
     Field(discriminator="kind"),
 ]

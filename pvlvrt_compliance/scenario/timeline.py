@@ -44,8 +44,14 @@ def entries(scenario: Scenario) -> list[Entry]:
     at_start = times.index(scenario.start_s)
     anchor = math.radians(scenario.point_on_wave_deg) + _jump_at(scenario, scenario.start_s) - angles[at_start]
     return [
-        Entry(t, math.remainder(angle + anchor, 2 * math.pi), *frequency, *_voltages(scenario, t, t_next), *_grid(scenario, t))
-        for t, t_next, angle, frequency in zip(times, [*times[1:], None], angles, frequencies, strict=True)
+        Entry(
+            t,
+            math.remainder(angles[k] + anchor, 2 * math.pi),
+            *frequencies[k],
+            *_voltages(scenario, t, last=k == len(times) - 1),
+            *_grid(scenario, t),
+        )
+        for k, t in enumerate(times)
     ]
 
 
@@ -60,7 +66,7 @@ def irradiance_points(scenario: Scenario) -> list[tuple[float, float]]:
 
 def asked_sequences_pu(scenario: Scenario, t_s: float) -> Sequences:
     """Symmetrical components that the source is asked for at an instant from the start of the record (pu)."""
-    factor, _ = _profile(scenario, t_s, None)
+    factor, _ = _profile(scenario, t_s)
     return Sequences(*(factor * part for part in _sagged(scenario, t_s)))
 
 
@@ -109,14 +115,14 @@ def _sagged(scenario: Scenario, t: float) -> Sequences:
     return max(holding, key=lambda item: item[0])[1].sequences_pu()
 
 
-def _profile(scenario: Scenario, t: float, t_next: float | None) -> tuple[float, float]:
+def _profile(scenario: Scenario, t: float) -> tuple[float, float]:
     """Factor of the voltage profiles (pu) and its slope (pu/s) from an instant on."""
     factor, slope = 1.0, 0.0
     for event in scenario.events:
         if isinstance(event, VoltageProfile):
             level, rate = _along(event.points, t - scenario.start_s)
             factor, slope = factor * level, slope * level + factor * rate
-    return factor, slope if t_next is not None else 0.0
+    return factor, slope
 
 
 def _along(points: tuple[tuple[float, float], ...], t: float) -> tuple[float, float]:
@@ -131,9 +137,10 @@ def _along(points: tuple[tuple[float, float], ...], t: float) -> tuple[float, fl
     return u_a + slope * (t - t_a), slope
 
 
-def _voltages(scenario: Scenario, t: float, t_next: float | None) -> tuple[Sequences, Sequences]:
+def _voltages(scenario: Scenario, t: float, last: bool) -> tuple[Sequences, Sequences]:
     sagged = _sagged(scenario, t)
-    factor, slope = _profile(scenario, t, t_next)
+    factor, slope = _profile(scenario, t)
+    slope = 0.0 if last else slope  # nothing moves after the last breakpoint, whatever rounding says
     return Sequences(*(factor * part for part in sagged)), Sequences(*(slope * part for part in sagged))
 
 
