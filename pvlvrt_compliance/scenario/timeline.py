@@ -12,6 +12,7 @@ from pvlvrt_compliance.scenario.events import (
     PhaseJump,
     VoltageProfile,
 )
+from pvlvrt_compliance.scenario.sag import through_transformer
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.space_vectors import Sequences
 
@@ -87,14 +88,16 @@ def _frequency(scenario: Scenario, t: float) -> tuple[float, float]:
     f, rate = scenario.frequency_hz, 0.0
     events = (e for e in scenario.events if isinstance(e, FrequencyStep | FrequencyRamp))
     for event in sorted(events, key=lambda e: e.t_s):
-        since = t - scenario.start_s - event.t_s
-        if since < 0:
+        begin = scenario.start_s + event.t_s
+        if t < begin:
             break
         if isinstance(event, FrequencyStep):
             f, rate = event.to_hz, 0.0
         else:
-            f += event.rate_hz_s * min(since, event.duration_s)
-            rate = event.rate_hz_s if since < event.duration_s else 0.0
+            # The end as `_breakpoints` has it: rounding must not let the ramp run on for the whole of the next entry.
+            running = t < begin + event.duration_s
+            f += event.rate_hz_s * (t - begin if running else event.duration_s)
+            rate = event.rate_hz_s if running else 0.0
     return f, rate
 
 
@@ -112,7 +115,8 @@ def _sagged(scenario: Scenario, t: float) -> Sequences:
     holding = [(begin, sag) for begin, end, sag in sags if begin <= t < end]
     if not holding:
         return Sequences(1 + 0j, 0j, 0j)
-    return max(holding, key=lambda item: item[0])[1].sequences_pu()
+    sequences = max(holding, key=lambda item: item[0])[1].sequences_pu()
+    return sequences if scenario.vector_group is None else through_transformer(sequences, scenario.vector_group)
 
 
 def _profile(scenario: Scenario, t: float) -> tuple[float, float]:
@@ -120,12 +124,12 @@ def _profile(scenario: Scenario, t: float) -> tuple[float, float]:
     factor, slope = 1.0, 0.0
     for event in scenario.events:
         if isinstance(event, VoltageProfile):
-            level, rate = _along(event.points, t - scenario.start_s)
+            level, rate = _along([(scenario.start_s + at, u) for at, u in event.points], t)
             factor, slope = factor * level, slope * level + factor * rate
     return factor, slope
 
 
-def _along(points: tuple[tuple[float, float], ...], t: float) -> tuple[float, float]:
+def _along(points: list[tuple[float, float]], t: float) -> tuple[float, float]:
     """Level and slope of a profile right after an instant: 1 before its first point, the last level held."""
     after = [k for k, (at, _) in enumerate(points) if at > t]
     if len(after) == len(points):
