@@ -202,7 +202,8 @@ static inline void plant_step(PlantState *x, vector m, vector e, double u_min, c
     x->closed = x->closed && !(blocked && (i == 0.0 || x->t_trip > p->t_breaker));
 }
 
-static inline void advance(PlantState *x, vector m, Source source, double t, PlantParams *p, const PlantTables *tables)
+static inline void advance(PlantState *x, vector m, Source source, double t, const PlantParams *p,
+                           const PlantTables *tables)
 {
     m = limited_to(M_MAX, m);
     double u_min = undervoltage_limit(&x->relay, &p->protection, &tables->undervoltage);
@@ -215,7 +216,6 @@ static inline void advance(PlantState *x, vector m, Source source, double t, Pla
         if (t_mid >= source.t_end) {
             source = source_at(t_mid, source.k, &tables->grid);
             rate = source.half_rate * source.half_rate;
-            as_at(p, t_mid, source.k, tables);
         }
         plant_step(x, m, grid_voltage(&source, t_mid, tables), u_min, p);
     }

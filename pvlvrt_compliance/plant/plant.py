@@ -110,18 +110,9 @@ def as_at(t: float, k: int, p: PlantParams, tables: PlantTables) -> PlantParams:
 
 
 @kernel
-def grid_voltage(source: Source, t: float, tables: PlantTables) -> complex:
-    """Space vector of the source with its harmonics at an instant (V)."""
-    e = source_voltage(source)
-    if len(tables.harmonics.order) > 0:
-        e += harmonic_voltage(source, t, tables.harmonics)
-    return e
-
-
-@kernel
 def observe(x: PlantState, m: complex, source: Source, t: float, p: PlantParams, tables: PlantTables) -> Observed:
     """Voltages at the instant ``t`` (s) of a state and its source, under the modulating signal that has led to it."""
-    e = grid_voltage(source, t, tables)
+    e = source_voltage(source) + harmonic_voltage(source, t, tables.harmonics)
     u_inv = bridge(limit_modulation(m), x.i, x.v_dc, x.trip != NO_TRIP).u
     zero = zero_sequence(source) + harmonic_zero_sequence(source, t, tables.harmonics)
     return Observed(u_ab=terminal_voltage(x, x.i, u_inv, e, p), u0_ab=e, u_zero=zero)
@@ -162,17 +153,21 @@ def advance(x: PlantState, m: complex, source: Source, t: float, p: PlantParams,
     """Advance by one control period under the modulating signal given for it.
 
     ``source`` and ``p`` are the grid and the parameters at the beginning, the instant ``t`` (s). A breakpoint within
-    the period takes effect in the plant step whose middle it precedes; irradiance is held for a period.
+    the period takes effect in the plant step whose middle it precedes; the line and the irradiance change with the
+    next period, so that what follows from them alone is computed once a period.
     """
     m = limit_modulation(m)
     u_min = undervoltage_limit(x.relay, p.protection, tables.undervoltage)
     source = half_step_later(source)
+    distorted = len(tables.harmonics.order) > 0
     for n in range(p.ratio):
         t_mid = t + (n + 0.5) * p.T_S
         if n > 0:
             source = step_later(source)
         if t_mid >= source.t_end:
             source = source_at(t_mid, source.k, tables.grid)
-            p = as_at(t_mid, source.k, p, tables)
-        x = plant_step(x, m, grid_voltage(source, t_mid, tables), u_min, p)
+        e = source_voltage(source)
+        if distorted:  # tables go no further than this branch: passing them on costs more than a whole step
+            e += harmonic_voltage(source, t_mid, tables.harmonics)
+        x = plant_step(x, m, e, u_min, p)
     return x
