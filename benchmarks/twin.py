@@ -92,6 +92,7 @@ _SCALARS: Mapping[Any, _Field] = {
     complex: _Field("double complex", ctypes.c_double * 2),
     NDArray[np.float64]: _Field("const double *", ctypes.c_void_p),
     NDArray[np.complex128]: _Field("const double complex *", ctypes.c_void_p),
+    NDArray[np.int64]: _Field("const int64_t *", ctypes.c_void_p),
 }
 
 

@@ -53,6 +53,14 @@ def check(
             rich_help_panel=_SAG,
         ),
     ] = False,
+    sag_type: Annotated[
+        str | None,
+        typer.Option(
+            metavar="A..G",
+            help="Sag by Bollen's type; --sag is what its characteristic voltage loses, --phases its symmetry.",
+            rich_help_panel=_SAG,
+        ),
+    ] = None,
     duration: Annotated[
         str | None,
         typer.Option(
@@ -88,6 +96,20 @@ def check(
         str | None,
         typer.Option(
             metavar="LEVEL", help="Inverter averaged (default) or switched, slower.", rich_help_panel=_SETTING
+        ),
+    ] = None,
+    transformer: Annotated[
+        str | None,
+        typer.Option(
+            metavar="GROUP",
+            help="Sags happen beyond a transformer of this vector group, Dyn11.",
+            rich_help_panel=_SETTING,
+        ),
+    ] = None,
+    events: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE", help="What happens besides: a TOML file with [[events]].", rich_help_panel=_SETTING
         ),
     ] = None,
     assignments: Annotated[
@@ -133,13 +155,15 @@ def check(
 
     request = Request(
         profile=profile,
-        sag=SagRequest(sag, phases, two_phase, duration, point_on_wave, irradiance) if sag is not None else None,
+        sag=None if sag is None else SagRequest(sag, phases, two_phase, sag_type, duration, point_on_wave, irradiance),
         overrides={
             "frequency_hz": frequency,
             "cell_temperature_c": temperature,
             "scr": scr,
             "xr": xr,
+            "vector_group": transformer,
         },
+        events=events,
         assignments=tuple(assignments or ()),
         fidelity=fidelity,
         patterns=tuple(tests or ()),
@@ -149,9 +173,9 @@ def check(
         quiet=quiet,
         command=context.obj or ("pvlvrt-check",),
     )
-    own = (phases, duration, point_on_wave, irradiance)
+    own = (phases, sag_type, duration, point_on_wave, irradiance)
     if sag is None and (two_phase or any(value is not None for value in own)):
-        raise UsageError("--phases, --two-phase, --duration, --point-on-wave and --irradiance need --sag")
+        raise UsageError("--phases, --two-phase, --sag-type, --duration, --point-on-wave and --irradiance need --sag")
     if sag is not None and tests:
         raise UsageError("--test selects from the profile's own tests; it does not go with --sag")
     job = prepare(request)

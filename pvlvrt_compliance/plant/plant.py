@@ -6,15 +6,18 @@ from pvlvrt_compliance.kernel import kernel
 from pvlvrt_compliance.plant.carrier import Pulses, pulses_of
 from pvlvrt_compliance.plant.grid import (
     GridTable,
+    HarmonicTable,
     Source,
     half_step_later,
+    harmonic_voltage,
+    harmonic_zero_sequence,
     source_at,
     source_voltage,
     step_later,
     zero_sequence,
 )
 from pvlvrt_compliance.plant.inverter import SWITCHED, Bridge, freewheeling, limit_modulation, modulated
-from pvlvrt_compliance.plant.line import LineParams, line_step, pcc_voltage
+from pvlvrt_compliance.plant.line import LineParams, LineTable, line_at, line_step, pcc_voltage
 from pvlvrt_compliance.plant.protection import (
     NO_TRIP,
     ProtectionParams,
@@ -25,6 +28,7 @@ from pvlvrt_compliance.plant.protection import (
 )
 from pvlvrt_compliance.plant.pv_array import PvParams, array_current, diode_voltage
 from pvlvrt_compliance.plant.switched_bridge import DeviceParams, PeriodMean, added_to_mean, switched_flow
+from pvlvrt_compliance.plant.weather import IrradianceTable, irradiance_at
 from pvlvrt_compliance.vectors import scaled
 
 
@@ -47,6 +51,9 @@ class PlantTables(NamedTuple):
     """What is looked up in arrays, once a control period."""
 
     grid: GridTable
+    harmonics: HarmonicTable
+    lines: LineTable
+    irradiance: IrradianceTable
     undervoltage: UndervoltageCurve
 
 
@@ -104,6 +111,23 @@ def terminal_voltage(x: PlantState, i: complex, u_inv: complex, e: complex, p: P
 
 
 @kernel
+def as_at(t: float, k: int, p: PlantParams, tables: PlantTables) -> PlantParams:
+    """Parameters as they are at an instant (s) in entry ``k`` of the grid's breakpoints: line and irradiance change."""
+    return PlantParams(
+        pv=p.pv,
+        line=line_at(k, tables.lines),
+        protection=p.protection,
+        devices=p.devices,
+        C=p.C,
+        G=irradiance_at(t, tables.irradiance),
+        t_breaker=p.t_breaker,
+        T_S=p.T_S,
+        ratio=p.ratio,
+        fidelity=p.fidelity,
+    )
+
+
+@kernel
 def inverter_voltage(x: PlantState, m: complex, p: PlantParams) -> complex:
     """Inverter voltage (V) that sensors see: of the switched bridge the mean over the period that has ended."""
     if p.fidelity == SWITCHED and x.trip == NO_TRIP:
@@ -112,12 +136,12 @@ def inverter_voltage(x: PlantState, m: complex, p: PlantParams) -> complex:
 
 
 @kernel
-def observe(x: PlantState, m: complex, source: Source, p: PlantParams) -> Observed:
-    """Voltages at the instant of a state and its source, under the modulating signal that has led to it."""
-    e = source_voltage(source)
-    return Observed(
-        u_ab=terminal_voltage(x, x.i, inverter_voltage(x, m, p), e, p), u0_ab=e, u_zero=zero_sequence(source)
-    )
+def observe(x: PlantState, m: complex, source: Source, t: float, p: PlantParams, tables: PlantTables) -> Observed:
+    """Voltages at the instant ``t`` (s) of a state and its source, under the modulating signal that has led to it."""
+    e = source_voltage(source) + harmonic_voltage(source, t, tables.harmonics)
+    u_ab = terminal_voltage(x, x.i, inverter_voltage(x, m, p), e, p)
+    zero = zero_sequence(source) + harmonic_zero_sequence(source, t, tables.harmonics)
+    return Observed(u_ab=u_ab, u0_ab=e, u_zero=zero)
 
 
 @kernel
@@ -183,14 +207,16 @@ def switched_plant_step(x: PlantState, pulses: Pulses, n: int, e: complex, u_min
 def advance(x: PlantState, m: complex, source: Source, t: float, p: PlantParams, tables: PlantTables) -> PlantState:
     """Advance by one control period under the modulating signal given for it.
 
-    ``source`` is the grid at the beginning, the instant ``t`` (s). A breakpoint within the period takes effect in the
-    plant step whose middle it precedes.
+    ``source`` and ``p`` are the grid and the parameters at the beginning, the instant ``t`` (s). A breakpoint within
+    the period takes effect in the plant step whose middle it precedes; the line and the irradiance change with the
+    next period, so that what follows from them alone is computed once a period.
     """
     m = limit_modulation(m)
     u_min = undervoltage_limit(x.relay, p.protection, tables.undervoltage)
     switched = p.fidelity == SWITCHED
     pulses = pulses_of(m, p.ratio * p.T_S)
     source = half_step_later(source)
+    distorted = len(tables.harmonics.order) > 0
     for n in range(p.ratio):
         t_mid = t + (n + 0.5) * p.T_S
         if n > 0:
@@ -198,6 +224,8 @@ def advance(x: PlantState, m: complex, source: Source, t: float, p: PlantParams,
         if t_mid >= source.t_end:
             source = source_at(t_mid, source.k, tables.grid)
         e = source_voltage(source)
+        if distorted:  # tables go no further than this branch: passing them on costs more than a whole step
+            e += harmonic_voltage(source, t_mid, tables.harmonics)
         if switched and x.trip == NO_TRIP:
             x = switched_plant_step(x, pulses, n, e, u_min, p)
         else:

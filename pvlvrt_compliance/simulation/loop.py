@@ -15,7 +15,7 @@ from pvlvrt_compliance.control.controller import (
 )
 from pvlvrt_compliance.kernel import cached_kernel, kernel
 from pvlvrt_compliance.plant.grid import source_at
-from pvlvrt_compliance.plant.plant import Observed, PlantParams, PlantState, PlantTables, advance, observe
+from pvlvrt_compliance.plant.plant import Observed, PlantParams, PlantState, PlantTables, advance, as_at, observe
 from pvlvrt_compliance.vectors import phases_of
 
 COMPLETED, NOT_FINITE = range(2)
@@ -94,13 +94,14 @@ def run(
         t = n * T_reg
         source = source_at(t, k_grid, tables.grid)
         k_grid = source.k
-        y = observe(plant, m, source, plant_params)
+        now = as_at(t, k_grid, plant_params, tables)
+        y = observe(plant, m, source, t, now, tables)
         sampled = Measured(u_g_ab=y.u_ab, i_ab=plant.i, v_dc=plant.v_dc, i_pv=plant.i_pv)
         controller, signals = controller_step(controller, sampled, controller_params)
         if not is_finite(plant, signals):
             return Outcome(status=NOT_FINITE, samples=max(n, 0), plant=plant)
         if n >= 0:
-            record(samples[n], plant, y, signals, plant_params.G)
-        plant = advance(plant, m, source, t, plant_params, tables)
+            record(samples[n], plant, y, signals, now.G)
+        plant = advance(plant, m, source, t, now, tables)
         m = signals.m
     return Outcome(status=COMPLETED, samples=len(samples), plant=plant)

@@ -1,6 +1,5 @@
 """The one place where words with units become the symbols of the kernels, and where a run's first state is made."""
 
-import cmath
 import math
 from typing import NamedTuple
 
@@ -15,20 +14,26 @@ from pvlvrt_compliance.control.lvrt import LvrtParams
 from pvlvrt_compliance.control.modulator import ModulatorParams
 from pvlvrt_compliance.control.mppt import MpptParams
 from pvlvrt_compliance.kernel import plain
-from pvlvrt_compliance.plant import line, pv_array
+from pvlvrt_compliance.plant import pv_array
 from pvlvrt_compliance.plant.grid import GridTable
-from pvlvrt_compliance.plant.inverter import FIDELITIES, K_PWM, M_MAX, SWITCHED
+from pvlvrt_compliance.plant.inverter import FIDELITIES, K_PWM, M_MAX
 from pvlvrt_compliance.plant.plant import PlantParams, PlantState, PlantTables
 from pvlvrt_compliance.plant.protection import NO_TRIP, ProtectionParams, UndervoltageCurve, relays_at_rest
 from pvlvrt_compliance.plant.pv_array import STC_IRRADIANCE, PvParams
 from pvlvrt_compliance.plant.switched_bridge import DeviceParams, PeriodMean
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.surroundings import (
+    grid_table,
+    harmonic_table,
+    irradiance_table,
+    line_of,
+    line_table,
+)
 from pvlvrt_compliance.sogi import in_steady_state
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.vectors import rotation
 
-_SQRT3_2 = math.sqrt(1.5)  # length of a power-invariant space vector per unit of phase amplitude
 _SWITCHED_REFERENCE_VA = 800.0 * 1000.0  # voltage and current that the switching energy is given for (V A)
 _FREQUENCY_BAND_HZ = 5.0  # default setting of the frequency relay around nominal
 
@@ -66,26 +71,6 @@ def control_period_s(parameters: Parameters) -> float:
     return parameters.simulation.control_ratio * plant_step_s(parameters)
 
 
-def grid_table(scenario: Scenario, nominal: Nominal, T_S: float) -> GridTable:
-    """Source that sags by the scenario: healthy, sagged from its start, healthy from its clearing."""
-    w = 2 * math.pi * scenario.frequency_hz
-    pos, neg, zero = scenario.sag.sequences_pu()
-    start, clear = scenario.start_s, scenario.clear_s
-    t = np.array([-1e3, start, clear])  # settling is shorter, and angles keep their digits
-    peak = nominal.phase_voltage_peak_v
-    angle = math.radians(scenario.point_on_wave_deg)
-    return GridTable(
-        t=t,
-        theta=np.remainder(angle + w * (t - start), 2 * math.pi),
-        w=np.full(3, w),
-        half_rate=np.full(3, cmath.exp(0.5j * w * T_S)),
-        u_pos=_SQRT3_2 * peak * np.array([1, pos, 1], dtype=np.complex128),
-        # A negative-sequence phasor turns backwards as a space vector: its angle changes sign.
-        u_neg=_SQRT3_2 * peak * np.array([0, neg.conjugate(), 0], dtype=np.complex128),
-        u_zero=peak * np.array([0, zero, 0], dtype=np.complex128),
-    )
-
-
 def protection_params(parameters: Parameters, nominal: Nominal) -> ProtectionParams:
     """Settings of the relays."""
     p = parameters.protection
@@ -121,15 +106,9 @@ def plant_params(parameters: Parameters, scenario: Scenario) -> PlantParams:
     p = parameters.plant
     nominal = nominal_of(parameters, scenario)
     T_S = plant_step_s(parameters)
-    Z = nominal.impedance_ohm / scenario.scr if scenario.scr is not None else 0.0
-    R_g = Z / math.hypot(1, scenario.xr)
-    fidelity = FIDELITIES.index(parameters.simulation.fidelity)
-    # One device conducts in every leg at any time, so their resistance is the line's.
-    R = p.filter_resistance_ohm + (p.device_resistance_ohm if fidelity == SWITCHED else 0.0)
-    L_g = R_g * scenario.xr / (2 * math.pi * nominal.frequency_hz)
     return PlantParams(
         pv=pv_params(parameters, scenario),
-        line=line.design(p.filter_inductance_h, R, L_g, R_g, T_S),
+        line=line_of(parameters, nominal, scenario.scr, scenario.xr, T_S),
         protection=protection_params(parameters, nominal),
         devices=device_params(parameters),
         C=p.dc_link_capacitance_f,
@@ -137,15 +116,20 @@ def plant_params(parameters: Parameters, scenario: Scenario) -> PlantParams:
         t_breaker=p.breaker_opening_s,
         T_S=T_S,
         ratio=parameters.simulation.control_ratio,
-        fidelity=fidelity,
+        fidelity=FIDELITIES.index(parameters.simulation.fidelity),
     )
 
 
 def plant_tables(parameters: Parameters, scenario: Scenario) -> PlantTables:
-    """What the plant looks up: the grid's events and the undervoltage curve."""
+    """What the plant looks up: the events of grid and weather, and the undervoltage curve."""
+    nominal = nominal_of(parameters, scenario)
+    T_S = plant_step_s(parameters)
     curve = np.array(parameters.protection.undervoltage_curve, dtype=np.float64)
     return PlantTables(
-        grid=grid_table(scenario, nominal_of(parameters, scenario), plant_step_s(parameters)),
+        grid=grid_table(scenario, nominal, T_S),
+        harmonics=harmonic_table(scenario, nominal),
+        lines=line_table(scenario, parameters, nominal, T_S),
+        irradiance=irradiance_table(scenario),
         undervoltage=UndervoltageCurve(t=curve[:, 0].copy(), u=curve[:, 1].copy()),
     )
 
