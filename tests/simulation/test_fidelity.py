@@ -1,6 +1,9 @@
 """The switched inverter beside the averaged one: equal in the mean when ideal, and what dead time and losses change."""
 
 import math
+import tomllib
+from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +11,8 @@ import pytest
 from pvlvrt_compliance.measure.windows import standard_windows
 from pvlvrt_compliance.profile.loading import load_profile
 from pvlvrt_compliance.scenario.parameters import parameters_from
+from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.loop import record, record_phases
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.space_vectors import clarke
@@ -18,8 +23,6 @@ LOSSLESS = ("plant.device_drop_v=0", "plant.device_resistance_ohm=0", "plant.swi
 IDEAL = (*SWITCHED, "plant.dead_time_us=0", *LOSSLESS)
 I, U = math.sqrt(2) * 500e3 / 690, math.sqrt(2) * 230  # noqa: E741 - the symbols of the nominal values
 V_DROP, R_ON, R_FILTER, T_LOSS, T = 0.22, 0.5e-3, 1e-3, 24.76e-3 / 800e3, 40.9568e-6
-
-SAGS = {"three-phase 90 %": (0.9, "abc", 0.309), "phase c 90 %": (0.9, "c", 1.262), "phase c 50 %": (0.5, "c", 1.473)}
 
 
 def record_means(row, x, y, s, G):
@@ -34,30 +37,42 @@ def recording_means(rebuild_loop):
     return rebuild_loop(record=record_means)
 
 
-def windows_of(run):
-    """Windows before, during and after the sag."""
-    scenario = run.scenario
-    return standard_windows(scenario.start_s, scenario.clear_s, run.samples.end_s, scenario.frequency_hz)
-
-
 def rms(x) -> float:
     """Root of the mean square."""
     return float(np.sqrt(np.mean(np.square(x))))
 
 
-@pytest.mark.parametrize("frequency_hz", [50.0, 60.0])
-@pytest.mark.parametrize("irradiance", [1000.0, 800.0])
-@pytest.mark.parametrize("sag", SAGS)
-def test_ideal_switching_agrees_with_the_average(simulated, recording_means, sag, irradiance, frequency_hz):
-    """Without dead time and drops, one-period means of the currents and v_DC agree within 1 % of nominal, rms."""
-    depth, phases, duration_s = SAGS[sag]
-    run = simulated(depth, phases, duration_s=duration_s, irradiance_w_m2=irradiance, frequency_hz=frequency_hz)
-    switched = simulate(run.scenario, parameters_from(IDEAL), run=recording_means).segments[0]
-    for window in windows_of(run):
-        averaged, means = run.samples.slice(*window), switched.slice(*window)
-        for x, mean in zip(averaged.three_phase("i"), means.three_phase("i"), strict=True):
-            assert rms(0.5 * (x[:-1] + x[1:]) - mean[1:]) < 0.01 * I
-        assert rms(averaged["v_dc_v"] - means["v_dc_v"]) < 0.01 * 1000
+def golden_cases():
+    """Scenario and settings of every golden case."""
+    for file in sorted((Path(__file__).parents[1] / "golden").glob("*/input.toml")):
+        table = tomllib.loads(file.read_text("utf-8"))
+        settings = tuple(table.get("parameters", ()))
+        yield pytest.param(Scenario.model_validate(table["scenario"]), settings, id=file.parent.name)
+
+
+def sags():
+    """The paper's three sags at both frequencies and two irradiances."""
+    for depth, phases, duration_s in ((0.9, "abc", 0.309), (0.9, "c", 1.262), (0.5, "c", 1.473)):
+        sag = Sag.model_validate({"depth": depth, "phases": phases})
+        for frequency_hz, irradiance in product((50.0, 60.0), (1000.0, 800.0)):
+            scenario = Scenario(sag=sag, duration_s=duration_s, frequency_hz=frequency_hz, irradiance_w_m2=irradiance)
+            yield pytest.param(scenario, (), id=f"{sag.describe()}, {frequency_hz:g} Hz, {irradiance:g} W/m2")
+
+
+@pytest.mark.parametrize(("scenario", "settings"), [*golden_cases(), *sags()])
+def test_ideal_switching_agrees_with_the_average(recording_means, scenario, settings):
+    """Without dead time and drops, one-period means of the currents and v_DC agree within 1 % of nominal, rms.
+
+    They agree within 0.1 %, and that is asked of them: the 1 % is for what dead time and losses add.
+    """
+    averaged = simulate(scenario, parameters_from(settings)).segments[0]
+    switched = simulate(scenario, parameters_from((*settings, *IDEAL)), run=recording_means).segments[0]
+    for window in standard_windows(scenario.start_s, scenario.clear_s, averaged.end_s, scenario.frequency_hz):
+        if window is not None:
+            samples, means = averaged.slice(*window), switched.slice(*window)
+            for x, mean in zip(samples.three_phase("i"), means.three_phase("i"), strict=True):
+                assert rms(0.5 * (x[:-1] + x[1:]) - mean[1:]) < 0.001 * I
+            assert rms(samples["v_dc_v"] - means["v_dc_v"]) < 0.001 * 1000
 
 
 def test_the_sampled_current_is_the_mean(simulated, recording_means):

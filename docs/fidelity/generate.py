@@ -1,8 +1,9 @@
-"""Makes the table and the figure of fidelity.md: averaged and switched inverter in the paper's three sags.
+"""Write the table and the figure of docs/fidelity.md: averaged and switched inverter in every golden case.
 
-Run as ``python docs/fidelity.py``; needs matplotlib (extra `docs`). Rewrites the table between the page's markers.
+Example: python docs/fidelity/generate.py
 """
 
+import tomllib
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -27,18 +28,15 @@ from pvlvrt_compliance.space_vectors import SQRT2_3, clarke
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms import Segment
 
-PAGE, FIGURE = (Path(__file__).with_suffix(suffix) for suffix in (".md", ".png"))
+HERE = Path(__file__).parent
+PAGE, FIGURE = HERE.with_suffix(".md"), HERE / "currents.png"
+CASES = HERE.parents[1] / "tests" / "golden"
 BEGIN, END = "<!-- table -->\n", "<!-- end of table -->\n"
 
 SWITCHED = ("simulation.fidelity=switched",)
 IDEAL = (
     *SWITCHED,
     *("plant.dead_time_us=0", "plant.device_drop_v=0", "plant.device_resistance_ohm=0", "plant.switching_energy_mj=0"),
-)
-SAGS = (
-    ("three-phase 90 %", Sag(depth=0.9), 0.309),
-    ("phase c 90 %", Sag(depth=0.9, phases="c"), 1.262),
-    ("phase c 50 %", Sag(depth=0.5, phases="c"), 1.473),
 )
 FINE = 128  # instants in a carrier period at which the figure shows the ripple
 
@@ -65,24 +63,21 @@ def differences(a: Segment, b: Segment) -> tuple[float, float]:
 
 
 def rows() -> Iterator[str]:
-    """Lines of the table: the worst of the three windows of each run."""
-    yield "| sag | W/m² | Hz | ideal: i | v_DC | real: i | v_DC | THD averaged | THD real |\n"
-    yield 9 * "|---" + "|\n"
-    for name, sag, duration_s in SAGS:
-        for irradiance in (1000.0, 800.0):
-            for frequency_hz in (50.0, 60.0):
-                scenario = Scenario(
-                    sag=sag, duration_s=duration_s, irradiance_w_m2=irradiance, frequency_hz=frequency_hz
-                )
-                yield f"| {name} | {irradiance:g} | {frequency_hz:g} | {' | '.join(cells(scenario))} |\n"
+    """Lines of the table, one for each golden case."""
+    yield "| case | ideal: i | v_DC | real: i | v_DC | THD averaged | THD real |\n"
+    yield 7 * "|---" + "|\n"
+    for case in sorted(folder for folder in CASES.iterdir() if (folder / "input.toml").is_file()):
+        table = tomllib.loads((case / "input.toml").read_text("utf-8"))
+        texts = cells(Scenario.model_validate(table["scenario"]), tuple(table.get("parameters", ())))
+        yield f"| {case.name} | {' | '.join(texts)} |\n"
 
 
-def cells(scenario: Scenario) -> list[str]:
-    """Differences of ideal and real switching from the average, and the distortion of the current during the sag."""
-    (averaged, before), (_, after) = run(scenario, ()), run(scenario, SWITCHED)
+def cells(scenario: Scenario, own: tuple[str, ...]) -> list[str]:
+    """Differences of ideal and real switching from the average, worst of the windows; distortions of the current."""
+    (averaged, before), (_, after) = run(scenario, own), run(scenario, (*own, *SWITCHED))
     texts = []
     for settings in (IDEAL, SWITCHED):
-        other = run(scenario, settings)[0]
+        other = run(scenario, (*own, *settings))[0]
         windows = standard_windows(scenario.start_s, scenario.clear_s, averaged.end_s, scenario.frequency_hz)
         spans = [window for window in windows if window is not None]
         found = [differences(averaged.slice(*span), other.slice(*span)) for span in spans]
@@ -130,8 +125,7 @@ def draw() -> None:
     mpl.use("agg")
     import matplotlib.pyplot as plt
 
-    _, sag, duration_s = SAGS[1]
-    scenario = Scenario(sag=sag, duration_s=duration_s)
+    scenario = Scenario(sag=Sag(depth=0.9, phases="c"), duration_s=1.262)
     averaged, ideal, real = (run(scenario, settings)[0] for settings in ((), IDEAL, SWITCHED))
     figure, (top, middle, bottom) = plt.subplots(3, 1, figsize=(8, 9), layout="constrained")
     near = real.slice(0.2585, 0.2605)
