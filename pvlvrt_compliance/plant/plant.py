@@ -111,7 +111,7 @@ def as_at(t: float, k: int, p: PlantParams, tables: PlantTables) -> PlantParams:
 
 @kernel
 def observe(x: PlantState, m: complex, source: Source, t: float, p: PlantParams, tables: PlantTables) -> Observed:
-    """Voltages at the instant ``t`` (s) of a state and its source, under the modulating signal that has led to it."""
+    """Voltages at the instant ``t`` (s) of a state and its source, as the period begins in which ``m`` acts."""
     e = source_voltage(source) + harmonic_voltage(source, t, tables.harmonics)
     u_inv = bridge(limit_modulation(m), x.i, x.v_dc, x.trip != NO_TRIP).u
     zero = zero_sequence(source) + harmonic_zero_sequence(source, t, tables.harmonics)

@@ -11,6 +11,7 @@ from pvlvrt_compliance.errors import UsageError, did_you_mean
 
 Positive = Annotated[FiniteFloat, Field(gt=0)]
 NotNegative = Annotated[FiniteFloat, Field(ge=0)]
+PhaseValues = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 
 
 class _Group(BaseModel):
@@ -88,6 +89,9 @@ class ControllerParameters(_Group):
     mppt_step_v: NotNegative = Field(default=0.5, description="size of a perturbation; not in the paper")
     mppt_voltage_min_v: NotNegative = Field(default=600.0, description="lower limit of v*_DC; not in the paper")
     mppt_voltage_max_v: Positive = Field(default=1000.0, description="upper limit of v*_DC; not in the paper")
+    computation_delay_samples: int = Field(
+        default=1, ge=0, le=20, description="from a sample to the period in which its modulating signal acts"
+    )
     grid_voltage_feedforward: bool = Field(default=False, description="the paper names none")
 
     @model_validator(mode="after")
@@ -102,12 +106,37 @@ class ControllerParameters(_Group):
         return self
 
 
+class SensorParameters(_Group):
+    """What lies between the plant and the controller's numbers; the defaults are ideal."""
+
+    adc_bits: int = Field(default=0, ge=0, le=24, description="resolution over the range; 0: none, and no range")
+    voltage_range_v: Positive = Field(default=600.0, description="grid voltages, both signs")
+    current_range_a: Positive = Field(default=3000.0, description="phase currents, both signs")
+    dc_voltage_range_v: Positive = Field(default=1500.0, description="from 0")
+    pv_current_range_a: Positive = Field(default=1000.0, description="from 0")
+    voltage_gain: PhaseValues = (1.0, 1.0, 1.0)
+    current_gain: PhaseValues = (1.0, 1.0, 1.0)
+    dc_voltage_gain: FiniteFloat = 1.0
+    pv_current_gain: FiniteFloat = 1.0
+    voltage_offset_v: PhaseValues = (0.0, 0.0, 0.0)
+    current_offset_a: PhaseValues = (0.0, 0.0, 0.0)
+    dc_voltage_offset_v: FiniteFloat = 0.0
+    pv_current_offset_a: FiniteFloat = 0.0
+    voltage_noise_v: NotNegative = Field(default=0.0, description="standard deviation")
+    current_noise_a: NotNegative = 0.0
+    dc_voltage_noise_v: NotNegative = 0.0
+    pv_current_noise_a: NotNegative = 0.0
+    noise_seed: int = Field(default=0, ge=0, description="the same seed gives the same noise")
+    measurement_delay_samples: int = Field(default=0, ge=0, le=20)
+
+
 class Parameters(_Group):
     """All parameters of a run but its scenario."""
 
     simulation: SimulationParameters = SimulationParameters()
     plant: PlantParameters = PlantParameters()
     protection: ProtectionParameters = ProtectionParameters()
+    sensors: SensorParameters = SensorParameters()
     controller: ControllerParameters = ControllerParameters()
 
 

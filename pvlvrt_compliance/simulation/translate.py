@@ -42,6 +42,7 @@ class Start(NamedTuple):
     plant: PlantState
     controller: ControllerState
     m: complex  # modulating signal of the first period (-)
+    u_g_ab: complex  # grid voltage (V)
 
 
 def nominal_of(parameters: Parameters, scenario: Scenario) -> Nominal:
@@ -197,4 +198,5 @@ def steady_state(
             current=regulator,
         ),
         m=m,
+        u_g_ab=u,
     )
