@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterable
 from itertools import pairwise
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Literal, Self, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError, model_validator
 
@@ -11,6 +11,8 @@ from pvlvrt_compliance.errors import UsageError, did_you_mean
 
 Positive = Annotated[FiniteFloat, Field(gt=0)]
 NotNegative = Annotated[FiniteFloat, Field(ge=0)]
+
+PowerStrategy = Literal["constant-p-q", "constant-p-light-q", "constant-p-sinusoidal", "constant-q", "balanced"]
 
 
 class _Group(BaseModel):
@@ -71,6 +73,7 @@ class ControllerParameters(_Group):
     fault_threshold_pu: Positive = Field(default=0.85, description="a fault is flagged below it")
     reactive_plateau_voltage_pu: NotNegative = Field(default=0.5, description="eq (9): full reactive power below it")
     reactive_plateau_pu: NotNegative = Field(default=0.75, description="eq (9): full reactive power")
+    power_strategy: PowerStrategy = "constant-p-sinusoidal"
     sequence_difference_min_pu: Positive = Field(
         default=0.005, description="below this V+ - V- the current reference is zero; guard, not in the paper"
     )
@@ -121,7 +124,7 @@ def parameter_names() -> list[str]:
 
 
 def parameters_from(assignments: Iterable[str]) -> Parameters:
-    """Defaults with ``group.name=value`` applied; values are written as in JSON.
+    """Defaults with ``group.name=value`` applied; values are written as in JSON, words also without quotes.
 
     Raises
     ------
@@ -147,10 +150,18 @@ def parameters_from(assignments: Iterable[str]) -> Parameters:
         raise UsageError("; ".join(_problem(e["loc"], e["msg"]) for e in error.errors())) from None
 
 
+def _takes_words(name: str) -> bool:
+    group, _, key = name.partition(".")
+    annotation: Any = Parameters.model_fields[group].annotation
+    return get_origin(annotation.model_fields[key].annotation) is Literal
+
+
 def _value(name: str, text: str) -> Any:
     try:
         return json.loads(text)
     except json.JSONDecodeError:
+        if _takes_words(name):
+            return text.strip()
         raise UsageError(f"--set {name}: {text!r} is not a value; write a number, true, false, null or [..]") from None
 
 

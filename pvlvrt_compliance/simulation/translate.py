@@ -2,11 +2,12 @@
 
 import cmath
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
-from pvlvrt_compliance.control import dc_voltage_regulator, mppt, msogi_fll
+from pvlvrt_compliance.control import current_references, dc_voltage_regulator, mppt, msogi_fll
 from pvlvrt_compliance.control.controller import ControllerParams, ControllerState
 from pvlvrt_compliance.control.current_references import CurrentReferenceParams
 from pvlvrt_compliance.control.current_regulator import CurrentRegulatorParams, at_rest_regulator
@@ -21,7 +22,7 @@ from pvlvrt_compliance.plant.inverter import K_PWM, M_MAX
 from pvlvrt_compliance.plant.plant import PlantParams, PlantState, PlantTables
 from pvlvrt_compliance.plant.protection import NO_TRIP, ProtectionParams, UndervoltageCurve, relays_at_rest
 from pvlvrt_compliance.plant.pv_array import STC_IRRADIANCE, PvParams
-from pvlvrt_compliance.scenario.parameters import Parameters
+from pvlvrt_compliance.scenario.parameters import Parameters, PowerStrategy
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.sogi import in_steady_state
 from pvlvrt_compliance.units import Nominal
@@ -29,6 +30,14 @@ from pvlvrt_compliance.vectors import rotation
 
 _SQRT3_2 = math.sqrt(1.5)  # length of a power-invariant space vector per unit of phase amplitude
 _FREQUENCY_BAND_HZ = 5.0  # default setting of the frequency relay around nominal
+
+_STRATEGIES: Mapping[PowerStrategy, int] = {
+    "constant-p-q": current_references.CONSTANT_P_Q,
+    "constant-p-light-q": current_references.CONSTANT_P_LIGHT_Q,
+    "constant-p-sinusoidal": current_references.CONSTANT_P_SINUSOIDAL,
+    "constant-q": current_references.CONSTANT_Q,
+    "balanced": current_references.BALANCED,
+}
 
 
 class Start(NamedTuple):
@@ -155,7 +164,10 @@ def controller_params(parameters: Parameters, scenario: Scenario) -> ControllerP
             v_min=c.mppt_voltage_min_v,
             v_max=c.mppt_voltage_max_v,
         ),
-        references=CurrentReferenceParams(u_pos_less_neg_min=c.sequence_difference_min_pu * u_nom),
+        references=CurrentReferenceParams(
+            strategy=_STRATEGIES[c.power_strategy],
+            u_pos_less_neg_min=c.sequence_difference_min_pu * u_nom,
+        ),
         current=CurrentRegulatorParams(
             K_P=c.pr_proportional_gain,
             K_I=c.pr_integral_gain,
