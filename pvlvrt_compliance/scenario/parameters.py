@@ -13,6 +13,7 @@ Positive = Annotated[FiniteFloat, Field(gt=0)]
 NotNegative = Annotated[FiniteFloat, Field(ge=0)]
 
 PowerStrategy = Literal["constant-p-q", "constant-p-light-q", "constant-p-sinusoidal", "constant-q", "balanced"]
+Synchronisation = Literal["msogi-fll", "dsogi-fll", "srf-pll", "ddsrf-pll", "dsc-pll"]
 
 
 class _Group(BaseModel):
@@ -66,10 +67,19 @@ class ProtectionParameters(_Group):
 class ControllerParameters(_Group):
     """The control subsystem (Table 3); what the paper leaves open is said so."""
 
+    synchronisation: Synchronisation = "msogi-fll"
     sogi_gain: Positive = Field(default=2**0.5, description="K")
     fll_gain: NotNegative = Field(default=50.0, description="Gamma (1/s)")
-    fll_frequency_min_hz: Positive = Field(default=40.0, description="guard, not in the paper")
-    fll_frequency_max_hz: Positive = Field(default=70.0, description="guard, not in the paper")
+    fll_frequency_min_hz: Positive = Field(default=40.0, description="guard of every synchronisation, not in the paper")
+    fll_frequency_max_hz: Positive = Field(default=70.0, description="guard of every synchronisation, not in the paper")
+    pll_bandwidth_hz: Positive = Field(default=10.0, description="natural frequency of a PLL; not in the paper")
+    pll_damping: Positive = Field(default=2**-0.5, description="damping of a PLL; not in the paper")
+    pnsd_notch_damping: Positive = Field(
+        default=2**-0.5, description="damping of the srf-pll's notch at twice the frequency; not in the paper"
+    )
+    ddsrf_filter_ratio: Positive = Field(
+        default=2**-0.5, description="cut-off of the ddsrf-pll's filters by the grid's frequency; not in the paper"
+    )
     fault_threshold_pu: Positive = Field(default=0.85, description="a fault is flagged below it")
     reactive_plateau_voltage_pu: NotNegative = Field(default=0.5, description="eq (9): full reactive power below it")
     reactive_plateau_pu: NotNegative = Field(default=0.75, description="eq (9): full reactive power")
