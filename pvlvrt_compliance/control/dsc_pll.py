@@ -36,12 +36,16 @@ def locked(u_pos: complex, w: float, w_min: float, T: float) -> DscPllState:
 
 @kernel
 def delayed(line: NDArray[np.complex128], k: int, samples: float) -> complex:
-    """Signal as it was a number of samples, whole or not, before the one at ``k``: straight lines in between."""
+    """Signal as it was a number of samples, whole or not, before the one at ``k``: straight lines in between.
+
+    The number is kept within what the line holds: compiled code does not check its indices.
+    """
     size = len(line)
-    whole = min(max(int(samples), 1), size - 2)  # whatever the number is, no place outside the line
-    share = samples - whole
-    nearer, farther = line[(k - whole) % size], line[(k - whole - 1) % size]
-    return scaled(1 - share, nearer) + scaled(share, farther)
+    samples = min(max(samples, 1.0), size - 2.0)
+    whole = min(max(int(samples), 1), size - 2)  # once more, for a number that is none
+    nearer: complex = line[(k - whole) % size]
+    farther: complex = line[(k - whole - 1) % size]
+    return nearer + scaled(samples - whole, farther - nearer)
 
 
 @kernel

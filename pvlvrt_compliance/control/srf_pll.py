@@ -6,7 +6,7 @@ from pvlvrt_compliance.control.pll import PllParams, PllState, pll_step
 from pvlvrt_compliance.control.pll import locked as pll_locked
 from pvlvrt_compliance.control.synchronised import Synchronisation
 from pvlvrt_compliance.kernel import kernel
-from pvlvrt_compliance.sogi import SogiState, at_rest, harmonic_turns, sogi_step
+from pvlvrt_compliance.sogi import SogiState, harmonic_turns, in_steady_state, sogi_step
 from pvlvrt_compliance.vectors import Rotation, rotate_on, rotation, scaled, turned, turned_back
 
 
@@ -25,14 +25,19 @@ class SrfPllState(NamedTuple):
     neg_2w: SogiState  # in the frame of the negative sequence (V)
 
 
-def locked(u_pos: complex, w: float) -> SrfPllState:
+def locked(u_pos: complex, w: float, p: SrfPllParams) -> SrfPllState:
     """State of a synchronisation that is locked to a balanced grid.
 
-    In the frame of the negative sequence the positive one turns forwards at twice the frequency.
+    What stands charges the band-pass with K times itself in its quadrature output. In the frame of the negative
+    sequence the positive one turns forwards at twice the frequency.
     """
     amplitude = abs(u_pos)
     neg_2w = u_pos**2 / amplitude if amplitude > 0 else 0j
-    return SrfPllState(pll=pll_locked(u_pos, w), pos_2w=at_rest(), neg_2w=SogiState(u=neg_2w, qu=-1j * neg_2w))
+    return SrfPllState(
+        pll=pll_locked(u_pos, w),
+        pos_2w=SogiState(u=0j, qu=complex(p.K * amplitude)),
+        neg_2w=in_steady_state(neg_2w),
+    )
 
 
 @kernel

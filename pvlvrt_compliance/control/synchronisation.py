@@ -42,7 +42,7 @@ def locked(u_pos: complex, w: float, p: SynchronisationParams, T: float) -> Sync
     return SynchronisationState(
         msogi=msogi_fll.locked(u_pos, w),
         dsogi=dsogi_fll.locked(u_pos, w),
-        srf=srf_pll.locked(u_pos, w),
+        srf=srf_pll.locked(u_pos, w, p.srf),
         ddsrf=ddsrf_pll.locked(u_pos, w),
         dsc=dsc_pll.locked(u_pos, w, p.dsc.w_min, T),
     )

@@ -6,8 +6,11 @@ import pytest
 from pvlvrt_compliance.measure.fourier import component
 from pvlvrt_compliance.measure.power import instantaneous_power
 from pvlvrt_compliance.measure.sequences import sequence_phasors
+from pvlvrt_compliance.space_vectors import clarke
+from pvlvrt_compliance.units import Nominal
 
 STRATEGIES = ("constant-p-q", "constant-p-light-q", "constant-p-sinusoidal", "constant-q", "balanced")
+ALGORITHMS = ("msogi-fll", "dsogi-fll", "srf-pll", "ddsrf-pll", "dsc-pll")
 SAGS = [(frequency_hz, depth) for frequency_hz in (50.0, 60.0) for depth in (0.9, 0.5)]
 
 
@@ -82,5 +85,49 @@ def test_every_strategy_is_finite_in_the_deepest_sags(simulated, strategy, phase
     """A residual of zero ends in a finite record, and the grid comes back to an intact run."""
     run = simulated(1.0, phases, settings=(f"controller.power_strategy={strategy}",), duration_s=0.15)
     assert all(np.isfinite(x).all() for x in run.samples.channels.values())
+    assert run.samples["connected"].min() == 1
+    assert run.measured.after.active_power_kw == pytest.approx(run.measured.before.active_power_kw, rel=0.01)
+
+
+@pytest.fixture(scope="module")
+def locked_by(simulated):
+    """Build ``locked_by(algorithm, depth, phases, two_phase, **scenario) -> Record``."""
+    return lambda algorithm, *sag, **fields: simulated(
+        *sag, settings=(f"controller.synchronisation={algorithm}",), **fields
+    )
+
+
+def off_reference(samples):
+    """Largest distance of the current from its reference at the same sample, in parts of nominal current."""
+    reference = samples["i_ref_alpha_a"] + 1j * samples["i_ref_beta_a"]
+    return np.abs(clarke(*samples.three_phase("i")) - reference).max() / Nominal().current_ab_a
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+@pytest.mark.parametrize("frequency_hz", [47.0, 50.0, 52.0, 57.0, 62.0])
+def test_every_synchronisation_is_frequency_adaptive(locked_by, algorithm, frequency_hz):
+    """Off nominal frequency the current meets its reference within 1 % of nominal, from the first sample on."""
+    run = locked_by(algorithm, 0.0, frequency_hz=frequency_hz)
+    assert off_reference(run.samples.slice(0.0, 0.28)) < 0.01
+    assert np.abs(run.samples["frequency_estimate_hz"] - frequency_hz).max() < 1e-6
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+@pytest.mark.parametrize("frequency_hz", [47.0, 52.0])
+def test_it_is_frequency_adaptive_in_a_sag_too(locked_by, algorithm, frequency_hz):
+    """Once a sag of phase c has settled, currents of both sequences meet their reference within 1 % of nominal."""
+    run = locked_by(algorithm, 0.9, "c", duration_s=0.5, frequency_hz=frequency_hz)
+    assert off_reference(during(run)) < 0.01
+    assert run.samples["connected"].min() == 1
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+@pytest.mark.parametrize("sag", [("abc", False), ("c", False), ("ab", False), ("bc", True)])
+def test_every_synchronisation_is_finite_in_the_deepest_sags(locked_by, algorithm, sag):
+    """A residual of zero keeps every number finite and the frequency in its guard; the grid comes back to it."""
+    run = locked_by(algorithm, 1.0, *sag, duration_s=0.15)
+    assert all(np.isfinite(x).all() for x in run.samples.channels.values())
+    assert run.samples["frequency_estimate_hz"].min() >= 40 - 1e-9
+    assert run.samples["frequency_estimate_hz"].max() <= 70 + 1e-9
     assert run.samples["connected"].min() == 1
     assert run.measured.after.active_power_kw == pytest.approx(run.measured.before.active_power_kw, rel=0.01)
