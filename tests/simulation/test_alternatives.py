@@ -6,6 +6,8 @@ import pytest
 from pvlvrt_compliance.measure.fourier import component
 from pvlvrt_compliance.measure.power import instantaneous_power
 from pvlvrt_compliance.measure.sequences import sequence_phasors
+from pvlvrt_compliance.scenario.parameters import parameters_from
+from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.space_vectors import clarke
 from pvlvrt_compliance.units import Nominal
 
@@ -131,3 +133,11 @@ def test_every_synchronisation_is_finite_in_the_deepest_sags(locked_by, algorith
     assert run.samples["frequency_estimate_hz"].max() <= 70 + 1e-9
     assert run.samples["connected"].min() == 1
     assert run.measured.after.active_power_kw == pytest.approx(run.measured.before.active_power_kw, rel=0.01)
+
+
+def test_a_run_leaves_nothing_behind_for_the_next(simulated):
+    """The line of the DSC-PLL, which is written in place, belongs to one run: the same run again is the same record."""
+    settings = ("controller.synchronisation=dsc-pll",)
+    first = simulated(0.9, "c", settings=settings)
+    again = simulate(first.scenario, parameters_from(settings)).segments[0]
+    assert all(np.array_equal(x, again[name]) for name, x in first.samples.channels.items())
