@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-from pvlvrt_compliance.control import controller, lvrt, msogi_fll
+from pvlvrt_compliance.control import controller, lvrt, synchronised
 from pvlvrt_compliance.control.hardware import Hardware
 from pvlvrt_compliance.plant import grid, inverter, plant, protection, pv_array
 from pvlvrt_compliance.scenario.parameters import Parameters
@@ -45,7 +45,7 @@ _FOLDER = Path(__file__).resolve().parent
 _FLAGS = ("-std=gnu99", "-O3", "-march=native", "-fcx-limited-range", "-Wall", "-Wextra", "-shared", "-fPIC")
 
 _STRUCTURES = (
-    msogi_fll.Synchronisation,
+    synchronised.Synchronisation,
     lvrt.LvrtOrder,
     controller.Measured,
     controller.ControllerSignals,

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterable
 from itertools import pairwise
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Literal, Self, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError, model_validator
 
@@ -12,6 +12,9 @@ from pvlvrt_compliance.errors import UsageError, did_you_mean
 Positive = Annotated[FiniteFloat, Field(gt=0)]
 NotNegative = Annotated[FiniteFloat, Field(ge=0)]
 PhaseValues = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
+
+PowerStrategy = Literal["constant-p-q", "constant-p-light-q", "constant-p-sinusoidal", "constant-q", "balanced"]
+Synchronisation = Literal["msogi-fll", "dsogi-fll", "srf-pll", "ddsrf-pll", "dsc-pll"]
 
 
 class _Group(BaseModel):
@@ -65,13 +68,23 @@ class ProtectionParameters(_Group):
 class ControllerParameters(_Group):
     """The control subsystem (Table 3); what the paper leaves open is said so."""
 
+    synchronisation: Synchronisation = "msogi-fll"
     sogi_gain: Positive = Field(default=2**0.5, description="K")
     fll_gain: NotNegative = Field(default=50.0, description="Gamma (1/s)")
-    fll_frequency_min_hz: Positive = Field(default=40.0, description="guard, not in the paper")
-    fll_frequency_max_hz: Positive = Field(default=70.0, description="guard, not in the paper")
+    fll_frequency_min_hz: Positive = Field(default=40.0, description="guard of every synchronisation, not in the paper")
+    fll_frequency_max_hz: Positive = Field(default=70.0, description="guard of every synchronisation, not in the paper")
+    pll_bandwidth_hz: Positive = Field(default=10.0, description="natural frequency of a PLL; not in the paper")
+    pll_damping: Positive = Field(default=2**-0.5, description="damping of a PLL; not in the paper")
+    pnsd_notch_damping: Positive = Field(
+        default=2**-0.5, description="damping of the srf-pll's notch at twice the frequency; not in the paper"
+    )
+    ddsrf_filter_ratio: Positive = Field(
+        default=2**-0.5, description="cut-off of the ddsrf-pll's filters by the grid's frequency; not in the paper"
+    )
     fault_threshold_pu: Positive = Field(default=0.85, description="a fault is flagged below it")
     reactive_plateau_voltage_pu: NotNegative = Field(default=0.5, description="eq (9): full reactive power below it")
     reactive_plateau_pu: NotNegative = Field(default=0.75, description="eq (9): full reactive power")
+    power_strategy: PowerStrategy = "constant-p-sinusoidal"
     sequence_difference_min_pu: Positive = Field(
         default=0.005, description="below this V+ - V- the current reference is zero; guard, not in the paper"
     )
@@ -150,7 +163,7 @@ def parameter_names() -> list[str]:
 
 
 def parameters_from(assignments: Iterable[str]) -> Parameters:
-    """Defaults with ``group.name=value`` applied; values are written as in JSON.
+    """Defaults with ``group.name=value`` applied; values are written as in JSON, words also without quotes.
 
     Raises
     ------
@@ -177,10 +190,18 @@ def parameters_from(assignments: Iterable[str]) -> Parameters:
         raise UsageError("; ".join(_problem(e["loc"], e["msg"]) for e in error.errors())) from None
 
 
+def _takes_words(name: str) -> bool:
+    group, _, key = name.partition(".")
+    annotation: Any = Parameters.model_fields[group].annotation
+    return get_origin(annotation.model_fields[key].annotation) is Literal
+
+
 def _value(name: str, text: str) -> Any:
     try:
         return json.loads(text, parse_constant=_refuse)
     except (ValueError, RecursionError):
+        if _takes_words(name):
+            return text.strip()
         raise UsageError(f"--set {name}: {text!r} is not a value; write a number, true, false, null or [..]") from None
 
 
