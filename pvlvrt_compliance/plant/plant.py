@@ -137,7 +137,7 @@ def inverter_voltage(x: PlantState, m: complex, p: PlantParams) -> complex:
 
 @kernel
 def observe(x: PlantState, m: complex, source: Source, t: float, p: PlantParams, tables: PlantTables) -> Observed:
-    """Voltages at the instant ``t`` (s) of a state and its source, under the modulating signal that has led to it."""
+    """Voltages at the instant ``t`` (s) of a state and its source, as the period begins in which ``m`` acts."""
     e = source_voltage(source) + harmonic_voltage(source, t, tables.harmonics)
     u_ab = terminal_voltage(x, x.i, inverter_voltage(x, m, p), e, p)
     zero = zero_sequence(source) + harmonic_zero_sequence(source, t, tables.harmonics)

@@ -1,18 +1,22 @@
 """The one place where words with units become the symbols of the kernels, and where a run's first state is made."""
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
-from pvlvrt_compliance.control import dc_voltage_regulator, mppt, msogi_fll
+from pvlvrt_compliance.control import current_references, dc_voltage_regulator, fll, mppt, pll, synchronisation
 from pvlvrt_compliance.control.controller import ControllerParams, ControllerState
 from pvlvrt_compliance.control.current_references import CurrentReferenceParams
 from pvlvrt_compliance.control.current_regulator import CurrentRegulatorParams, at_rest_regulator
 from pvlvrt_compliance.control.dc_voltage_regulator import DcVoltageRegulatorParams
+from pvlvrt_compliance.control.ddsrf_pll import DdsrfPllParams
 from pvlvrt_compliance.control.lvrt import LvrtParams
 from pvlvrt_compliance.control.modulator import ModulatorParams
 from pvlvrt_compliance.control.mppt import MpptParams
+from pvlvrt_compliance.control.srf_pll import SrfPllParams
+from pvlvrt_compliance.control.synchronisation import SynchronisationParams
 from pvlvrt_compliance.kernel import plain
 from pvlvrt_compliance.plant import pv_array
 from pvlvrt_compliance.plant.grid import GridTable
@@ -21,7 +25,7 @@ from pvlvrt_compliance.plant.plant import PlantParams, PlantState, PlantTables
 from pvlvrt_compliance.plant.protection import NO_TRIP, ProtectionParams, UndervoltageCurve, relays_at_rest
 from pvlvrt_compliance.plant.pv_array import STC_IRRADIANCE, PvParams
 from pvlvrt_compliance.plant.switched_bridge import DeviceParams, PeriodMean
-from pvlvrt_compliance.scenario.parameters import Parameters
+from pvlvrt_compliance.scenario.parameters import ControllerParameters, Parameters, PowerStrategy, Synchronisation
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.surroundings import (
     grid_table,
@@ -37,6 +41,21 @@ from pvlvrt_compliance.vectors import rotation
 _SWITCHED_REFERENCE_VA = 800.0 * 1000.0  # voltage and current that the switching energy is given for (V A)
 _FREQUENCY_BAND_HZ = 5.0  # default setting of the frequency relay around nominal
 
+_STRATEGIES: Mapping[PowerStrategy, int] = {
+    "constant-p-q": current_references.CONSTANT_P_Q,
+    "constant-p-light-q": current_references.CONSTANT_P_LIGHT_Q,
+    "constant-p-sinusoidal": current_references.CONSTANT_P_SINUSOIDAL,
+    "constant-q": current_references.CONSTANT_Q,
+    "balanced": current_references.BALANCED,
+}
+_ALGORITHMS: Mapping[Synchronisation, int] = {
+    "msogi-fll": synchronisation.MSOGI_FLL,
+    "dsogi-fll": synchronisation.DSOGI_FLL,
+    "srf-pll": synchronisation.SRF_PLL,
+    "ddsrf-pll": synchronisation.DDSRF_PLL,
+    "dsc-pll": synchronisation.DSC_PLL,
+}
+
 
 class Start(NamedTuple):
     """State of everything at the beginning of the unrecorded settling."""
@@ -44,6 +63,7 @@ class Start(NamedTuple):
     plant: PlantState
     controller: ControllerState
     m: complex  # modulating signal of the first period (-)
+    u_g_ab: complex  # grid voltage (V)
 
 
 def nominal_of(parameters: Parameters, scenario: Scenario) -> Nominal:
@@ -134,6 +154,19 @@ def plant_tables(parameters: Parameters, scenario: Scenario) -> PlantTables:
     )
 
 
+def synchronisation_params(c: ControllerParameters, u_nom: float) -> SynchronisationParams:
+    """Parameters of every synchronisation, and which is chosen; ``u_nom`` is |u_ab| nominal (V)."""
+    guards = (c.fll_frequency_min_hz, c.fll_frequency_max_hz, u_nom)
+    loop = pll.design(c.pll_bandwidth_hz, c.pll_damping, *guards)
+    return SynchronisationParams(
+        algorithm=_ALGORITHMS[c.synchronisation],
+        fll=fll.design(c.sogi_gain, c.fll_gain, *guards),
+        srf=SrfPllParams(pll=loop, K=2 * c.pnsd_notch_damping),
+        ddsrf=DdsrfPllParams(pll=loop, ratio=c.ddsrf_filter_ratio),
+        dsc=loop,
+    )
+
+
 def controller_params(parameters: Parameters, scenario: Scenario) -> ControllerParams:
     """Parameters of the controller."""
     c = parameters.controller
@@ -141,7 +174,7 @@ def controller_params(parameters: Parameters, scenario: Scenario) -> ControllerP
     T_reg = control_period_s(parameters)
     u_nom = nominal.voltage_ab_v
     return ControllerParams(
-        sync=msogi_fll.design(c.sogi_gain, c.fll_gain, c.fll_frequency_min_hz, c.fll_frequency_max_hz, u_nom),
+        sync=synchronisation_params(c, u_nom),
         lvrt=LvrtParams(
             S_nom=nominal.apparent_power_va,
             u_nom=u_nom,
@@ -156,7 +189,10 @@ def controller_params(parameters: Parameters, scenario: Scenario) -> ControllerP
             v_min=c.mppt_voltage_min_v,
             v_max=c.mppt_voltage_max_v,
         ),
-        references=CurrentReferenceParams(u_pos_less_neg_min=c.sequence_difference_min_pu * u_nom),
+        references=CurrentReferenceParams(
+            strategy=_STRATEGIES[c.power_strategy],
+            u_pos_less_neg_min=c.sequence_difference_min_pu * u_nom,
+        ),
         current=CurrentRegulatorParams(
             K_P=c.pr_proportional_gain,
             K_I=c.pr_integral_gain,
@@ -206,10 +242,11 @@ def steady_state(
             mean=PeriodMean(u=K_PWM * v_dc * m, i=i),
         ),
         controller=ControllerState(
-            sync=msogi_fll.locked(u, w),
+            sync=synchronisation.locked(u, w, controller.sync, controller.T),
             dc_voltage=dc_voltage_regulator.settled(P, v_dc, v_ref, controller.dc_voltage),
             mppt=mppt.searching_from(v_ref),
             current=regulator,
         ),
         m=m,
+        u_g_ab=u,
     )

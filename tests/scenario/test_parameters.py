@@ -64,10 +64,13 @@ def test_numbers_are_read_exactly(value):
         (" plant.modules_in_series =21", 21),
         ("simulation.fidelity=switched", "switched"),
         ('simulation.fidelity= "switched"', "switched"),
+        ("controller.synchronisation=dsc-pll", "dsc-pll"),
+        ('controller.power_strategy="constant-q"', "constant-q"),
+        ("controller.power_strategy= balanced ", "balanced"),
     ],
 )
 def test_values_as_in_json(assignment, value):
-    """True, null, lists and numbers are written as in JSON; a word that is one of several needs no quotes."""
+    """True, null, lists and numbers are written as in JSON; words need no quotes."""
     parameters = parameters_from([assignment])
     assert value_of(parameters, assignment.partition("=")[0].strip()) == value
 
@@ -105,6 +108,9 @@ def test_several_assignments_in_several_groups():
         ("protection.undervoltage_curve=[]", "--set protection.undervoltage_curve: "),
         ("protection.undervoltage_curve=[[0,0],[0,1]]", "the times of undervoltage_curve must increase"),
         ("controller.fll_frequency_min_hz=80", "fll_frequency_min_hz must be below fll_frequency_max_hz"),
+        ("controller.synchronisation=pll", "--set controller.synchronisation: .*'msogi-fll', 'dsogi-fll', 'srf-pll'"),
+        ("controller.power_strategy=3", "--set controller.power_strategy: .*'constant-p-q'"),
+        ("controller.power_strategy=", "--set controller.power_strategy: .*'constant-p-q'"),
         ("controller.mppt_voltage_max_v=500", "mppt_voltage_min_v must be below mppt_voltage_max_v"),
         ("controller.fault_threshold_pu=0.4", "reactive_plateau_voltage_pu must be below fault_threshold_pu"),
     ],
