@@ -26,6 +26,7 @@ _NAMES_AND_UNITS = {
     "frequency_hz": ("grid frequency", "Hz"),
     "irradiance_w_m2": ("irradiance", "W/m²"),
     "cell_temperature_c": ("cell temperature", "°C"),
+    "vector_group": ("beyond a transformer", ""),
     "before_s": ("record before the sag", "s"),
     "after_s": ("record after clearing", "s"),
 }
@@ -42,7 +43,8 @@ def sag_interval(scenario: Mapping[str, Any]) -> Interval | None:
 def facts(scenario: Mapping[str, Any]) -> list[Fact]:
     """Properties of a scenario in the order given; those that this module does not know are shown as they are."""
     sag = [Fact("sag", describe_sag(_sag(scenario)))] if _sag(scenario) else []
-    known = [_fact(name, value) for name, value in scenario.items() if name not in {"sag", "scr", "xr", "events"}]
+    apart = {"sag", "scr", "xr", "events"}
+    known = [_fact(name, value) for name, value in scenario.items() if name not in apart and value is not None]
     return sag + known + _grid(scenario) + [_event(event) for event in scenario.get("events", ())]
 
 

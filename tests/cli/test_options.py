@@ -57,7 +57,7 @@ def test_two_phase(judge, options, pair):
     """The voltage between the two phases sags: V+ = (1 + r)/2, V- = (1 - r)/2; the pair is bc unless named."""
     ended, reports = judge("--sag", "60%", *options)
     assert ended.status == 0
-    assert reports.test["scenario"]["sag"] == {"depth": 0.6, "phases": pair, "two_phase": True}
+    assert reports.test["scenario"]["sag"] == {"depth": 0.6, "phases": pair, "two_phase": True, "type": None}
     during = reports.test["measurements"]["during"]
     assert during["voltage_positive_pu"] == pytest.approx(0.7, abs=1e-3)
     assert during["voltage_negative_pu"] == pytest.approx(0.3, abs=1e-3)
@@ -102,7 +102,7 @@ def test_grid_and_weather(judge):
     """Frequency, temperature, irradiance, strength and X/R of the grid, and the point on wave reach the scenario."""
     _, reports = judge(
         *("--sag", "20%", "--frequency", "60", "--temperature", "40", "--irradiance", "500"),
-        *("--scr", "20", "--xr", "5", "--point-on-wave", "-90"),
+        *("--scr", "20", "--xr", "5", "--point-on-wave", "-90", "--transformer", "Dyn11"),
     )
     scenario = reports.test["scenario"]
     assert {name: scenario[name] for name in scenario if name not in {"sag", "duration_s", "before_s", "after_s"}} == {
@@ -112,6 +112,8 @@ def test_grid_and_weather(judge):
         "scr": 20,
         "xr": 5,
         "point_on_wave_deg": -90,
+        "vector_group": "Dyn11",
+        "events": [],
     }
     before = reports.test["measurements"]["before"]
     assert before["frequency_hz"] == pytest.approx(60, abs=0.01)
