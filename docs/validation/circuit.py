@@ -6,19 +6,19 @@ import subprocess
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from evidence import Row, at_most
 from numpy.typing import NDArray
-from records import NOMINAL, record, rms, without_trips
 
+from evidence import Plot, Row, Section, at_most
 from pvlvrt_compliance.plant.pv_array import PvParams
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.translate import plant_step_s, pv_params
 from pvlvrt_compliance.waveforms import Segment
+from records import NOMINAL, in_parallel, record, rms, without_trips
 
 CURRENT_LIMIT_PERCENT = 0.5
 VOLTAGE_LIMIT_PERCENT = 0.1
@@ -64,9 +64,7 @@ def scenario_of(sag: Sag) -> Scenario:
     Between steps the simulator would move an event by up to half of one, which the open loop never forgets.
     """
     step = plant_step_s(Parameters())
-    return Scenario(
-        sag=sag, before_s=50003 * step, duration_s=5861 * step, after_s=0.1, point_on_wave_deg=30.0
-    )
+    return Scenario(sag=sag, before_s=50003 * step, duration_s=5866 * step, after_s=0.1, point_on_wave_deg=30.0)
 
 
 def pwl(name: str, node: str, t: NDArray[np.float64], x: NDArray[np.float64]) -> Iterator[str]:
@@ -167,11 +165,14 @@ def solved(scenario: Scenario, parameters: Parameters, samples: Segment) -> NDAr
         return np.loadtxt(output, skiprows=1).T
 
 
-def compare(sag: Sag) -> Compared:
-    """Run both programs through a sag, from 10 ms before it to 20 ms after it."""
+def compare(sag: Sag, circuit_parameters: Parameters | None = None) -> Compared:
+    """Run both programs through a sag, from 10 ms before it to 20 ms after it.
+
+    Other parameters for the circuit make it another one, to see that a difference shows.
+    """
     parameters, scenario = without_trips(), scenario_of(sag)
     samples = record(scenario, parameters).slice(scenario.start_s - BEFORE_S, scenario.clear_s + AFTER_S)
-    theirs = solved(scenario, parameters, samples)
+    theirs = solved(scenario, circuit_parameters or parameters, samples)
     t = samples.t_s[1:] - samples.t_s[1]
     ours = np.array([samples[name][1:] for name in ("i_a_a", "i_b_a", "i_c_a", "v_dc_v")])
     return Compared(t=t - (scenario.start_s - samples.t_s[1]), ours=ours, theirs=_at(t, theirs))
@@ -185,6 +186,39 @@ def rows(compared: dict[str, Compared]) -> tuple[Row, ...]:
     """Differences by sag."""
     found = []
     for name, c in compared.items():
-        found.append(at_most(f"currents, {name}, rms", c.current_percent, CURRENT_LIMIT_PERCENT, "% of nominal"))
-        found.append(at_most(f"DC voltage, {name}, largest", c.voltage_percent, VOLTAGE_LIMIT_PERCENT, "%"))
+        found.append(at_most(f"currents, {name}, rms", c.current_percent, CURRENT_LIMIT_PERCENT, "% of nominal", 0.01))
+        found.append(at_most(f"DC voltage, {name}, largest", c.voltage_percent, VOLTAGE_LIMIT_PERCENT, "%", 0.001))
     return tuple(found)
+
+
+def drawing(name: str, c: Compared) -> Plot:
+    """Currents and DC voltage of both programs."""
+
+    def draw(figure: Any) -> None:
+        currents, voltage = figure.subplots(1, 2)
+        for k, phase in enumerate("abc"):
+            currents.plot(1e3 * c.t, c.ours[k], linewidth=1, label=f"i_{phase}")
+            currents.plot(1e3 * c.t[::60], c.theirs[k][::60], "k.", markersize=3)
+        voltage.plot(1e3 * c.t, c.ours[3], linewidth=1)
+        voltage.plot(1e3 * c.t[::60], c.theirs[3][::60], "k.", markersize=3)
+        currents.set(xlabel="time (ms)", ylabel="current (A)")
+        voltage.set(xlabel="time (ms)", ylabel="DC voltage (V)")
+        currents.legend(fontsize="x-small", loc="upper right")
+
+    return Plot("ngspice", f"{name}: lines are the simulator's, points are ngspice's.", draw)
+
+
+def section() -> Section:
+    """Section on ngspice."""
+    compared = dict(zip(SAGS, in_parallel(compare, SAGS.values()), strict=True))
+    name = "phase c 90 %"
+    return Section("Plant against ngspice", _TEXT, rows(compared), (drawing(name, compared[name]),))
+
+
+_TEXT = """A circuit of the averaged plant in three phases: a diode with the array's parameters, photocurrent, shunt
+and series resistance; the link; an inverter of controlled sources (u_x = 2/3 v_DC m_x, i_DC = 2/3 sum of m_x i_x)
+with a floating star point; filter; and three phase-to-neutral sources that sag, zero sequence included. The
+modulating signals are those that the controller put out in a simulated run, held per control period: the circuit is
+in open loop, so that an error is not controlled away. From 10 ms before a sag of 30 ms to 20 ms after it. The sag
+begins and ends within control periods, on plant steps: between them the simulator would move an event by up to half
+a step (2.6 us), a current of 6 A that an open loop keeps."""

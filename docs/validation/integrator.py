@@ -5,12 +5,11 @@ from typing import Any, NamedTuple
 
 import numba
 import numpy as np
-from evidence import Row, at_most
 from numpy.typing import NDArray
-from records import NOMINAL, record, rms, vector, without_trips
 from scipy.integrate import solve_ivp
 from scipy.special import lambertw
 
+from evidence import Plot, Row, Section, at_most
 from pvlvrt_compliance.control.controller import ControllerState, Measured, controller_step
 from pvlvrt_compliance.plant.pv_array import PvParams
 from pvlvrt_compliance.scenario.parameters import Parameters
@@ -25,6 +24,7 @@ from pvlvrt_compliance.simulation.translate import (
     steady_state,
 )
 from pvlvrt_compliance.waveforms import Segment
+from records import NOMINAL, record, rms, vector, without_trips
 
 LIMIT_PERCENT = 0.2
 WINDOW_S = 0.06
@@ -131,10 +131,11 @@ def whole_record(scenario: Scenario) -> tuple[Parameters, Scenario]:
     return parameters, scenario.model_copy(update={"before_s": 0.8})
 
 
-def compare(scenario: Scenario, centre: str) -> Compared:
+def compare(scenario: Scenario, centre: str, **changed: float) -> Compared:
     """Continue a run from 30 ms before the start or the end of its sag (``start`` or ``clear``) for 60 ms by scipy.
 
-    The controller is brought to where it is at that sample by what it has measured until then.
+    The controller is brought to where it is at that sample by what it has measured until then. Fields of `Plant` that
+    are ``changed`` make scipy's plant another one, to see that a difference shows.
     """
     parameters, scenario = whole_record(scenario)
     samples = record(scenario, parameters)
@@ -154,12 +155,10 @@ def compare(scenario: Scenario, centre: str) -> Compared:
         G=plant.G,
         scenario=scenario,
     )
-    return _continued(model, samples, first, x, complex(m[-1]), control)
+    return _continued(model._replace(**changed), samples, first, x, complex(m[-1]), control)
 
 
-def _continued(
-    model: Plant, samples: Segment, first: int, x: ControllerState, m: complex, control: Any
-) -> Compared:
+def _continued(model: Plant, samples: Segment, first: int, x: ControllerState, m: complex, control: Any) -> Compared:
     T = control_period_s(Parameters())
     i_ours, v_ours = vector(samples, "i"), samples["v_dc_v"]
     n = range(first, first + round(WINDOW_S / T))
@@ -175,13 +174,51 @@ def _continued(
     return Compared(samples.t_s[mine], i_ours[mine], found[:, 0] + 1j * found[:, 1], v_ours[mine], found[:, 2])
 
 
-def rows() -> tuple[Row, ...]:
+def all_compared() -> dict[str, Compared]:
+    """Every case and window, by name."""
+    return {
+        f"{name}, {words}": compare(scenario, centre)
+        for name, scenario in CASES.items()
+        for centre, words in (("start", "start"), ("clear", "end"))
+    }
+
+
+def rows(compared: dict[str, Compared]) -> tuple[Row, ...]:
     """Differences by case and window."""
     found = []
-    for name, scenario in CASES.items():
-        for centre, words in (("start", "start"), ("clear", "end")):
-            c = compare(scenario, centre)
-            where = f"{name}, 60 ms around the {words}, rms"
-            found.append(at_most(f"current, {where}", c.current_percent, LIMIT_PERCENT, "% of nominal"))
-            found.append(at_most(f"DC voltage, {where}", c.voltage_percent, LIMIT_PERCENT, "% of 1000 V"))
+    for name, c in compared.items():
+        found.append(
+            at_most(f"current, {name} of the sag, rms", c.current_percent, LIMIT_PERCENT, "% of nominal", 0.001)
+        )
+        found.append(
+            at_most(f"DC voltage, {name} of the sag, rms", c.voltage_percent, LIMIT_PERCENT, "% of 1000 V", 0.001)
+        )
     return tuple(found)
+
+
+def drawing(name: str, c: Compared) -> Plot:
+    """Difference of the current vector over time."""
+
+    def draw(figure: Any) -> None:
+        axes = figure.subplots()
+        axes.plot(1e3 * (c.t - c.t[0]), np.abs(c.i_ours - c.i_theirs), linewidth=1)
+        axes.set(xlabel="time (ms)", ylabel="difference of the current vector (A)")
+
+    return Plot("integrator", f"{name} of the sag; nominal is 1255 A.", draw)
+
+
+def section() -> Section:
+    """Section on scipy's integrator."""
+    compared = all_compared()
+    name = "three-phase 90 %, start"
+    return Section(
+        "Plant against scipy's integrator, in closed loop", _TEXT, rows(compared), (drawing(name, compared[name]),)
+    )
+
+
+_TEXT = """The continuous equations of the plant, written anew with the closed form of the array (Lambert's W) and
+integrated by `solve_ivp` (DOP853, relative tolerance 1e-10) from sample to sample of the discrete controller, which
+holds its output between them, and exactly to the start and the end of the sag. The controller is the same on both
+sides, in closed loop: it sees what either plant has made. 60 ms around the start and around the end of three sags
+of the paper. The difference is a jump at the event, which the simulator places on its nearest step of 5 us, and is
+gone within milliseconds."""
