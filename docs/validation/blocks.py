@@ -178,14 +178,15 @@ def sogi_plot() -> Plot:
 
 
 def resonator_plot() -> Plot:
-    """Resonator of the fundamental with and without lead."""
-    p = loops.nominal_controller()
+    """Resonator of the 13th harmonic, where the lead is largest."""
+    p, h = loops.nominal_controller(), 13
     lines: dict[str, Callable[[float], complex]] = {
-        "eq (6)": lambda w: loops.resonance(1j * w, W, p.current.w_c),
-        ". as it runs, no lead": lambda w: loops.resonator_response(w, 1, p.current.w_c, 0, p.T),
-        ". as it runs, lead of 2 samples": lambda w: loops.resonator_response(w, 1, p.current.w_c, 2, p.T),
+        "eq (6)": lambda w: loops.resonance(1j * w, h * W, p.current.w_c),
+        ". as it runs, no lead": lambda w: loops.resonator_response(w, h, p.current.w_c, 0, p.T),
+        ". as it runs, lead of 2 samples": lambda w: loops.resonator_response(w, h, p.current.w_c, 2, p.T),
     }
-    return Plot("resonator", "Resonator of the fundamental; the lead shows above it as phase.", bode(lines, 40, 63))
+    caption = "Resonator of the 13th harmonic: held samples cost half a period of phase, the lead gives two back."
+    return Plot("resonator", caption, bode(lines, 500, 800))
 
 
 def loop_plots() -> tuple[Plot, Plot]:

@@ -92,6 +92,13 @@ def settled_current_form(finding: Finding) -> float:
     return 1 / (abs(positive) - abs(negative))
 
 
+def half_sag_v_fault(xr: float) -> float:
+    """V_fault (pu) that a sag of 50 % of one phase settles at, behind an SCR of 50 with this X/R."""
+    scenario = Scenario(sag=Sag(depth=0.5, phases="c"), duration_s=0.3, scr=50.0, xr=xr)
+    part = record(scenario, Parameters()).slice(scenario.start_s + 0.1, scenario.clear_s - 0.02)
+    return float(part["v_fault_pu"].mean())
+
+
 def verdict_row(finding: Finding) -> Row:
     """What the tool measures of the current."""
     measured = checks_of(finding)["current_limit"]["measured"]
@@ -138,6 +145,7 @@ def blind_spot() -> Section:
         shown("V_fault, mean", float(settled(BLIND_SPOT)["v_fault_pu"].mean()), "pu"),
         shown("changes of the Fault Signal", float(mode_changes(BLIND_SPOT))),
         verdict_row(BLIND_SPOT),
+        *(shown(f"V_fault at 50 %, SCR 50, X/R {xr:g}", half_sag_v_fault(xr), "pu") for xr in (10.0, 0.1)),
         Row("largest current", largest_current_pu(BLIND_SPOT), settled_current_form(BLIND_SPOT), 0.05, "pu"),
     )
     return Section(
@@ -200,7 +208,11 @@ def excursion() -> Section:
 
 _BLIND_SPOT = """The detector looks at V+ alone. A deep sag of one phase behind a grid impedance leaves V+ above
 0.85 pu: no fault is flagged, normal mode goes on feeding nominal power by eq (5), and the current is P / (V+ - V-),
-far beyond nominal, for as long as the sag lasts. The tool reports a failed `current_limit`."""
+far beyond nominal, for as long as the sag lasts. The tool reports a failed `current_limit`.
+
+How deep a sag is missed depends on what the grid's impedance makes of the inverter's own power: resistance lifts
+V+, reactance hardly does. 50 % of one phase (V+ = 0.833 without the inverter) is flagged at SCR 50 with X/R = 10
+and missed with X/R = 0.1."""
 _SMALL_SAG = """Between 0.85 and 1 pu nothing in the paper lowers the active power with the voltage, so at full
 power the current is P/V. This is the voltage drop VD1 of the profile `iec61400-21` at full power. A failed
 `current_limit`."""
