@@ -36,11 +36,12 @@ static inline bool finite_numbers(const PlantState *x, const ControllerSignals *
 }
 
 Outcome run(const PlantState *plant_start, const ControllerState *controller_start, const vector *m_start,
-            int64_t first, const PlantParams *p, const PlantTables *tables, const ControllerParams *controller_params,
+            int64_t first, const PlantParams *params, const PlantTables *tables, const ControllerParams *controller_params,
             double *samples, int64_t count)
 {
     PlantState plant = *plant_start;
     ControllerState controller = *controller_start;
+    PlantParams now = *params, *p = &now;
     vector m = *m_start;
     double T_reg = (double)p->ratio * p->T_S;
     int64_t k_grid = 0;
@@ -48,7 +49,8 @@ Outcome run(const PlantState *plant_start, const ControllerState *controller_sta
         double t = (double)n * T_reg;
         Source source = source_at(t, k_grid, &tables->grid);
         k_grid = source.k;
-        Observed y = observe(&plant, m, &source, p);
+        as_at(p, t, k_grid, tables);
+        Observed y = observe(&plant, m, &source, t, p, tables);
         Measured sampled = {.u_g_ab = y.u_ab, .i_ab = plant.i, .v_dc = plant.v_dc, .i_pv = plant.i_pv};
         ControllerSignals signals = controller_step(&controller, sampled, controller_params);
         if (!finite_numbers(&plant, &signals))

@@ -15,7 +15,8 @@ from typing import Any, NamedTuple, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
-from pvlvrt_compliance.control import controller, lvrt, msogi_fll
+from pvlvrt_compliance.control import controller, lvrt, synchronised
+from pvlvrt_compliance.control.hardware import Hardware
 from pvlvrt_compliance.plant import grid, inverter, plant, protection, pv_array
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
@@ -44,7 +45,7 @@ _FOLDER = Path(__file__).resolve().parent
 _FLAGS = ("-std=gnu99", "-O3", "-march=native", "-fcx-limited-range", "-Wall", "-Wextra", "-shared", "-fPIC")
 
 _STRUCTURES = (
-    msogi_fll.Synchronisation,
+    synchronised.Synchronisation,
     lvrt.LvrtOrder,
     controller.Measured,
     controller.ControllerSignals,
@@ -92,6 +93,7 @@ _SCALARS: Mapping[Any, _Field] = {
     complex: _Field("double complex", ctypes.c_double * 2),
     NDArray[np.float64]: _Field("const double *", ctypes.c_void_p),
     NDArray[np.complex128]: _Field("const double complex *", ctypes.c_void_p),
+    NDArray[np.int64]: _Field("const int64_t *", ctypes.c_void_p),
 }
 
 
@@ -174,6 +176,7 @@ class Arguments(NamedTuple):
     plant_params: plant.PlantParams
     tables: plant.PlantTables
     controller_params: controller.ControllerParams
+    hardware: Hardware  # ideal: the twin has none
     samples: NDArray[np.float64]
 
     @property
@@ -223,6 +226,8 @@ class Twin:
         a = arguments
         if not (a.samples.flags.c_contiguous and a.samples.dtype == np.float64):
             raise ValueError("the twin writes contiguous float64 samples")
+        if not a.hardware.ideal:
+            raise ValueError("the twin has ideal hardware only")
         packed = [_packed(x) for x in (a.plant, a.controller, a.plant_params, a.tables, a.controller_params)]
         start, control, params, tables, control_params = map(ctypes.byref, packed)
         m, first, count = _member(complex(a.m)), ctypes.c_int64(a.first), ctypes.c_int64(len(a.samples))

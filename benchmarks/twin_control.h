@@ -3,14 +3,14 @@
 
 #include "twin_vectors.h"
 
-static inline double fll_step(SogiState x, vector e, double w, const MsogiFllParams *p, double T)
+static inline double fll_step(SogiState x, vector e, double w, const FllParams *p, double T)
 {
     double norm = dot(x.u, x.u) + dot(x.qu, x.qu);
     double w_next = w - T * p->gamma * p->K * w * dot(e, x.qu) / max(norm, p->norm_min);
     return min(max(w_next, p->w_min), p->w_max);
 }
 
-static inline Synchronisation msogi_fll_step(MsogiFllState *x, vector u_g_ab, const MsogiFllParams *p, double T)
+static inline Synchronisation msogi_fll_step(MsogiFllState *x, vector u_g_ab, const FllParams *p, double T)
 {
     vector e = u_g_ab - (x->h1.u + x->h5.u + x->h7.u + x->h11.u + x->h13.u);
     Synchronisation seen = {
@@ -118,7 +118,7 @@ static inline vector modulate(vector m, vector u_g_ab, double v_dc, const Modula
 
 static inline ControllerSignals controller_step(ControllerState *x, Measured y, const ControllerParams *p)
 {
-    Synchronisation grid = msogi_fll_step(&x->sync, y.u_g_ab, &p->sync, p->T);
+    Synchronisation grid = msogi_fll_step(&x->sync.msogi, y.u_g_ab, &p->sync.fll, p->T);
     LvrtOrder order = lvrt_step(grid.u_pos, grid.u_neg, &p->lvrt);
     double v_ref = x->mppt.v_ref;
     bool limited;

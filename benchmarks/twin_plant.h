@@ -8,19 +8,86 @@ static inline Source source_at(double t, int64_t k, const GridTable *table)
     int64_t last = table->size - 1;
     while (k < last && t >= table->t[k + 1])
         k++;
-    double theta = table->theta[k] + table->w[k] * (t - table->t[k]);
+    double since = t - table->t[k];
+    double theta = table->theta[k] + (table->w[k] + 0.5 * table->dw[k] * since) * since;
+    vector half_rate = table->half_rate[k];
+    if (table->dw[k] != 0.0) {
+        double more = table->dw[k] * since * table->half_step;
+        half_rate *= CMPLX(cos(more), sin(more));
+    }
     return (Source){
         .k = k,
         .t_end = k < last ? table->t[k + 1] : INFINITY,
-        .u_pos = table->u_pos[k],
-        .u_neg = table->u_neg[k],
-        .u_zero = table->u_zero[k],
+        .u_pos = table->u_pos[k] + since * table->du_pos[k],
+        .u_neg = table->u_neg[k] + since * table->du_neg[k],
+        .u_zero = table->u_zero[k] + since * table->du_zero[k],
         .turn = CMPLX(cos(theta), sin(theta)),
-        .half_rate = table->half_rate[k],
+        .half_rate = half_rate,
+        .du_pos = table->half_step * table->du_pos[k],
+        .du_neg = table->half_step * table->du_neg[k],
     };
 }
 
+static inline void later(Source *x, vector by, double halves)
+{
+    x->u_pos += halves * x->du_pos;
+    x->u_neg += halves * x->du_neg;
+    x->turn *= by;
+}
+
+static inline vector power_of(vector turn, int64_t order)
+{
+    vector base = order >= 0 ? turn : conj(turn), result = 1.0;
+    for (int64_t n = order >= 0 ? order : -order; n > 0; n >>= 1) {
+        if (n & 1)
+            result *= base;
+        base *= base;
+    }
+    return result;
+}
+
+static inline vector harmonic_voltage(const Source *x, double t, const HarmonicTable *table)
+{
+    vector u = 0.0;
+    for (int64_t k = 0; k < table->size; k++)
+        if (table->t_on[k] <= t && t < table->t_off[k])
+            u += table->u[k] * power_of(x->turn, table->order[k]);
+    return u;
+}
+
+static inline double harmonic_zero_sequence(const Source *x, double t, const HarmonicTable *table)
+{
+    double u = 0.0;
+    for (int64_t k = 0; k < table->size; k++)
+        if (table->t_on[k] <= t && t < table->t_off[k])
+            u += creal(table->u_zero[k] * power_of(x->turn, table->order[k]));
+    return u;
+}
+
+static inline double irradiance_at(double t, const IrradianceTable *table)
+{
+    double G = table->G[table->size - 1];
+    for (int64_t k = table->size - 1; k > 0; k--)
+        if (t < table->t[k])
+            G = table->G[k - 1] + (t - table->t[k - 1]) / (table->t[k] - table->t[k - 1]) * (table->G[k] - table->G[k - 1]);
+    return G;
+}
+
+static inline void as_at(PlantParams *p, double t, int64_t k, const PlantTables *tables)
+{
+    const LineTable *lines = &tables->lines;
+    p->line = (LineParams){
+        .decay = lines->decay[k], .gain = lines->gain[k], .k_u = lines->k_u[k], .k_e = lines->k_e[k], .k_i = lines->k_i[k],
+    };
+    p->G = irradiance_at(t, &tables->irradiance);
+}
+
 static inline vector source_voltage(const Source *x) { return x->u_pos * x->turn + x->u_neg * conj(x->turn); }
+
+static inline vector grid_voltage(const Source *x, double t, const PlantTables *tables)
+{
+    return source_voltage(x) + harmonic_voltage(x, t, &tables->harmonics);
+}
 
 static inline Bridge modulated(vector m, vector i, double v_dc)
 {
@@ -46,14 +113,15 @@ static inline vector terminal_voltage(const PlantState *x, vector i, vector u_in
     return conducting ? p->k_u * u_inv + p->k_e * e + p->k_i * i : e;
 }
 
-static inline Observed observe(const PlantState *x, vector m, const Source *source, const PlantParams *p)
+static inline Observed observe(const PlantState *x, vector m, const Source *source, double t, const PlantParams *p,
+                               const PlantTables *tables)
 {
-    vector e = source_voltage(source);
+    vector e = grid_voltage(source, t, tables);
     vector u_inv = bridge(limited_to(M_MAX, m), x->i, x->v_dc, x->trip != NO_TRIP).u;
     return (Observed){
         .u_ab = terminal_voltage(x, x->i, u_inv, e, &p->line),
         .u0_ab = e,
-        .u_zero = creal(source->u_zero * source->turn),
+        .u_zero = creal(source->u_zero * source->turn) + harmonic_zero_sequence(source, t, &tables->harmonics),
     };
 }
 
@@ -140,15 +208,15 @@ static inline void advance(PlantState *x, vector m, Source source, double t, con
     m = limited_to(M_MAX, m);
     double u_min = undervoltage_limit(&x->relay, &p->protection, &tables->undervoltage);
     vector rate = source.half_rate * source.half_rate;
-    source.turn *= source.half_rate;
+    later(&source, source.half_rate, 1.0);
     for (int64_t n = 0; n < p->ratio; n++) {
         double t_mid = t + ((double)n + 0.5) * p->T_S;
         if (n > 0)
-            source.turn *= rate;
+            later(&source, rate, 2.0);
         if (t_mid >= source.t_end) {
             source = source_at(t_mid, source.k, &tables->grid);
             rate = source.half_rate * source.half_rate;
         }
-        plant_step(x, m, source_voltage(&source), u_min, p);
+        plant_step(x, m, grid_voltage(&source, t_mid, tables), u_min, p);
     }
 }

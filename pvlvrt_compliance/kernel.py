@@ -31,7 +31,7 @@ def kernel_digest() -> str:
     digest = hashlib.sha256(f"numba {numba.__version__}".encode())
     files = [_PACKAGE / name for name in _KERNEL_FILES]
     for folder in _KERNEL_FOLDERS:
-        files += sorted((_PACKAGE / folder).glob("*.py"))
+        files += sorted((_PACKAGE / folder).rglob("*.py"))
     for file in files:
         digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
     return digest.hexdigest()[:16]

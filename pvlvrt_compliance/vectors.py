@@ -41,3 +41,15 @@ def rotation(angle: float) -> Rotation:
 def rotate_on(r: Rotation, by: Rotation) -> Rotation:
     """Turn by the sum of two angles: multiples of an angle without further sines."""
     return Rotation(c=r.c * by.c - r.s * by.s, s=r.s * by.c + r.c * by.s)
+
+
+@kernel
+def turned(z: complex, by: Rotation) -> complex:
+    """Vector turned forwards: out of a frame at this angle."""
+    return complex(by.c * z.real - by.s * z.imag, by.s * z.real + by.c * z.imag)
+
+
+@kernel
+def turned_back(z: complex, by: Rotation) -> complex:
+    """Vector turned backwards: into a frame at this angle."""
+    return complex(by.c * z.real + by.s * z.imag, by.c * z.imag - by.s * z.real)

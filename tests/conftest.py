@@ -9,7 +9,7 @@ import numba
 import pytest
 
 from pvlvrt_compliance import kernel as kernel_module
-from pvlvrt_compliance.control import controller
+from pvlvrt_compliance.control import controller, synchronisation
 from pvlvrt_compliance.control.dc_voltage_regulator import DcVoltageRegulatorState
 from pvlvrt_compliance.control.lvrt import LvrtOrder, lvrt_step
 from pvlvrt_compliance.kernel import kernel, plain
@@ -41,12 +41,12 @@ def _with_globals(source: types.FunctionType, replaced: Mapping[str, Any]) -> ty
 def rebuild_loop() -> Callable[..., Loop]:
     """Build ``rebuild_loop(block_name=function, ...) -> run``, for `simulate(..., run=run)`.
 
-    A name is that of any function which the wiring (plant.py, controller.py) or the loop calls. Compiling takes
-    seconds: keep what it gives.
+    A name is that of any function which the wiring (plant.py, synchronisation.py, controller.py) or the loop calls.
+    Compiling takes seconds: keep what it gives.
     """
 
     def rebuild(**replacements: Callable[..., Any]) -> Loop:
-        modules = {module.__name__: module for module in (plant, controller, loop)}
+        modules = {module.__name__: module for module in (plant, synchronisation, controller, loop)}
         unknown = {name for name in replacements if not any(hasattr(module, name) for module in modules.values())}
         assert not unknown, f"no block of the loop is named {unknown}"
         blocks = {name: block if hasattr(block, "py_func") else kernel(block) for name, block in replacements.items()}

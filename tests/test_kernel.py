@@ -15,7 +15,7 @@ PACKAGE = Path(kernel.__file__).parent
 SOURCES = ["kernel.py", "space_vectors.py", "vectors.py", "sogi.py"] + [
     path.relative_to(PACKAGE).as_posix()
     for folder in ("control", "plant", "simulation")
-    for path in sorted((PACKAGE / folder).glob("*.py"))
+    for path in sorted((PACKAGE / folder).rglob("*.py"))
 ]
 
 

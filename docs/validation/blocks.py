@@ -134,7 +134,7 @@ def voltage_loop_rows() -> tuple[Row, ...]:
 def lock_rows() -> tuple[Row, ...]:
     """Decay rate of a small step of the frequency for a slow loop and for the paper's."""
     found = []
-    for gamma in (5.0, loops.nominal_controller().sync.gamma):
+    for gamma in (5.0, loops.nominal_controller().sync.fll.gamma):
         rate, mode = frequency_lock.decay_rate(gamma), frequency_lock.slowest_mode(gamma)
         found.append(
             Row(f"decay with Gamma = {gamma:g}: measured beside the slowest mode", rate, mode, 0.01 * mode, "1/s")

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loops import ORDERS, W, nominal_controller
-from pvlvrt_compliance.control.msogi_fll import MsogiFllParams, locked, msogi_fll_step
+from pvlvrt_compliance.control.msogi_fll import locked, msogi_fll_step
 from pvlvrt_compliance.kernel import in_python
 from pvlvrt_compliance.sogi import SogiState
 
@@ -26,7 +26,7 @@ def _follow(x: Any, u: Any, p: Any, T: Any, w: Any) -> None:
 def estimate(gamma: float, seconds: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Time (s) and what is left of a small step of the frequency (-), from a locked start."""
     p = nominal_controller()
-    params: MsogiFllParams = p.sync._replace(gamma=gamma)
+    params = p.sync.fll._replace(gamma=gamma)
     t = p.T * np.arange(round(seconds / p.T))
     target = W + 2 * math.pi * STEP_HZ
     w = np.empty(len(t))
@@ -44,7 +44,7 @@ def decay_rate(gamma: float) -> float:
 def slowest_mode(gamma: float) -> float:
     """Slowest rate (1/s) of the whole synchronisation linearised about a locked state, in the turning frame."""
     p = nominal_controller()
-    params = p.sync._replace(gamma=gamma)
+    params = p.sync.fll._replace(gamma=gamma)
     step, back = in_python(msogi_fll_step), np.exp(-1j * W * p.T)
     rest = locked(complex(_U), W)
 
@@ -63,7 +63,7 @@ def slowest_mode(gamma: float) -> float:
 
 def filter_rate() -> float:
     """Rate at which a quadrature generator follows amplitude and angle, K w/2 (1/s)."""
-    return nominal_controller().sync.K * W / 2
+    return nominal_controller().sync.fll.K * W / 2
 
 
 def second_order_rate(gamma: float) -> float:

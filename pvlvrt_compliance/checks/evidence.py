@@ -15,6 +15,7 @@ from pvlvrt_compliance.measure.quantities import Measurements, WindowMeasurement
 from pvlvrt_compliance.measure.sequences import phase_amplitudes, sequence_phasors
 from pvlvrt_compliance.measure.windows import Span, WindowRules, standard_windows
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.scenario.timeline import asked_sequences_pu
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
 
@@ -144,14 +145,26 @@ class Evidence:
         In the during-window; where the sag is too short for one, from one cycle after the start to clearing. None
         where not even one cycle fits.
         """
-        span = self.during_span or Span(self.scenario.start_s + 1 / self.frequency_hz, self.scenario.clear_s)
-        inside = self.between(span.start_s, span.end_s)
+        inside = self.between(*self._no_load_span)
         if not inside.any():
             return None
         positive, negative = (
             require_finite(self._sequence_pu("u0", index)[inside], "u0", self.t_s[inside]) for index in (0, 1)
         )
         return float(positive.mean()), float(negative.mean())
+
+    @property
+    def asked_pu(self) -> tuple[float, float]:
+        """Mean V+ and V- that the source was asked for where `no_load_pu` is measured (pu)."""
+        asked = [asked_sequences_pu(self.scenario, float(t)) for t in np.linspace(*self._no_load_span, 101)]
+        return (
+            float(np.mean([abs(sequences.positive) for sequences in asked])),
+            float(np.mean([abs(sequences.negative) for sequences in asked])),
+        )
+
+    @property
+    def _no_load_span(self) -> Span:
+        return self.during_span or Span(self.scenario.start_s + 1 / self.frequency_hz, self.scenario.clear_s)
 
     @property
     def power_before_kw(self) -> float:

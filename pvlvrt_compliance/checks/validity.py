@@ -47,9 +47,8 @@ def _wrong_sag(conditions: Conditions, evidence: Evidence) -> str | None:
     measured = evidence.no_load_pu
     if measured is None:
         return None
-    asked = evidence.scenario.sag.sequences_pu()
     tolerance = conditions.no_load_tolerance_pu.value
-    for name, found, wanted in zip(("V+", "V-"), measured, (abs(asked.positive), abs(asked.negative)), strict=True):
+    for name, found, wanted in zip(("V+", "V-"), measured, evidence.asked_pu, strict=True):
         if not abs(found - wanted) <= tolerance:
             return (
                 f"{name} without the inverter's current was {found:.3f} pu, more than {tolerance:g} pu from the "

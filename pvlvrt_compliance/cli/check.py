@@ -53,6 +53,14 @@ def check(
             rich_help_panel=_SAG,
         ),
     ] = False,
+    sag_type: Annotated[
+        str | None,
+        typer.Option(
+            metavar="A..G",
+            help="Sag by Bollen's type; --sag is what its characteristic voltage loses, --phases its symmetry.",
+            rich_help_panel=_SAG,
+        ),
+    ] = None,
     duration: Annotated[
         str | None,
         typer.Option(
@@ -83,6 +91,20 @@ def check(
     xr: Annotated[
         float | None,
         typer.Option("--xr", metavar="RATIO", help="X/R of the grid. Default 10.", rich_help_panel=_SETTING),
+    ] = None,
+    transformer: Annotated[
+        str | None,
+        typer.Option(
+            metavar="GROUP",
+            help="Sags happen beyond a transformer of this vector group, Dyn11.",
+            rich_help_panel=_SETTING,
+        ),
+    ] = None,
+    events: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE", help="What happens besides: a TOML file with [[events]].", rich_help_panel=_SETTING
+        ),
     ] = None,
     assignments: Annotated[
         list[str] | None,
@@ -127,13 +149,15 @@ def check(
 
     request = Request(
         profile=profile,
-        sag=SagRequest(sag, phases, two_phase, duration, point_on_wave, irradiance) if sag is not None else None,
+        sag=None if sag is None else SagRequest(sag, phases, two_phase, sag_type, duration, point_on_wave, irradiance),
         overrides={
             "frequency_hz": frequency,
             "cell_temperature_c": temperature,
             "scr": scr,
             "xr": xr,
+            "vector_group": transformer,
         },
+        events=events,
         assignments=tuple(assignments or ()),
         patterns=tuple(tests or ()),
         output=output,
@@ -142,9 +166,9 @@ def check(
         quiet=quiet,
         command=context.obj or ("pvlvrt-check",),
     )
-    own = (phases, duration, point_on_wave, irradiance)
+    own = (phases, sag_type, duration, point_on_wave, irradiance)
     if sag is None and (two_phase or any(value is not None for value in own)):
-        raise UsageError("--phases, --two-phase, --duration, --point-on-wave and --irradiance need --sag")
+        raise UsageError("--phases, --two-phase, --sag-type, --duration, --point-on-wave and --irradiance need --sag")
     if sag is not None and tests:
         raise UsageError("--test selects from the profile's own tests; it does not go with --sag")
     job = prepare(request)

@@ -11,7 +11,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn
 
 from pvlvrt_compliance.checks.evaluate import summarise
 from pvlvrt_compliance.checks.results import EXIT_STATUS, Results, TestResult, conclude
-from pvlvrt_compliance.cli.output import WAVEFORMS, OutputFolder
+from pvlvrt_compliance.cli.output import RESULTS, WAVEFORMS, OutputFolder
 from pvlvrt_compliance.cli.request import Job, Request
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.provenance import CHOSEN
@@ -80,7 +80,7 @@ class _Run:
     def write_reports(self) -> Results:
         """Stage all reports."""
         results = self.results()
-        self.output.write("results.json", results_json.render(results))
+        self.output.write(RESULTS, results_json.render(results))
         self.output.write("junit.xml", junit.render(results))
         self.output.write("report.html", html.render(results, self.figures))
         return results
@@ -93,9 +93,9 @@ class _Run:
             self.output.discard()
             log.print(f"interrupted; {count} were finished, nothing was written")
             return
-        self.output.write("results.json", results_json.render(self.results()))
+        self.output.write(RESULTS, results_json.render(self.results()))
         place = self.output.keep_interrupted()
-        log.print(f"interrupted; {count} were finished and are kept in {place}", soft_wrap=True)
+        log.print(f"interrupted; {count} were finished and are kept in {place}", soft_wrap=not log.is_terminal)
 
     def _keep(self, result: TestResult, waveforms: Waveforms, scenario: Scenario, nominal: Nominal) -> TestResult:
         stem = self.output.waveforms / result.id
@@ -157,6 +157,7 @@ def _show_doubts(screen: Console, notes: tuple[str, ...]) -> None:
     chosen = [note for note in notes if f": {CHOSEN} (" in note]
     for note in notes:
         if note not in chosen:
-            screen.print(f"Not verified: {note}", soft_wrap=True)
+            # In a file a note stays one line; a terminal would cut it in the middle of a word.
+            screen.print(f"Not verified: {note}", soft_wrap=not screen.is_terminal)
     if chosen:
         screen.print(f"Not verified: {len(chosen)} numbers that this project has chosen (the report lists them)")

@@ -1,6 +1,6 @@
 """The output folder. A run is staged beside its reports and takes their place only when it is whole."""
 
-import os
+import json
 import shutil
 import tempfile
 from contextlib import suppress
@@ -10,6 +10,7 @@ from pvlvrt_compliance.errors import UsageError
 
 WAVEFORMS = "waveforms"
 INTERRUPTED = "interrupted"
+RESULTS = "results.json"
 
 
 class OutputFolder:
@@ -50,18 +51,30 @@ class OutputFolder:
         return self.staging / WAVEFORMS
 
     def finish(self) -> None:
-        """Put the staged run in the place of the one before."""
-        self._replace_folder(self.waveforms, self.folder / WAVEFORMS)
-        for file in sorted(self.staging.iterdir()):
-            if file.is_file():
-                os.replace(file, self.folder / file.name)  # noqa: PTH105 - Path.replace is the same call
-        shutil.rmtree(self.staging, ignore_errors=True)
+        """Put the staged run in the place of the one before: waveforms first, so that every report finds its own."""
+        stale = _records_of(self.folder)
+        self._move_all(self.folder)
+        for record in stale - _records_of(self.folder):
+            for file in (self.folder / WAVEFORMS).glob(f"{record}.*"):
+                file.unlink(missing_ok=True)
+        if (self.folder / INTERRUPTED / RESULTS).is_file():
+            shutil.rmtree(self.folder / INTERRUPTED)
 
     def keep_interrupted(self) -> Path:
         """Keep what is finished of an interrupted run, beside the reports of the last whole one."""
         place = self.folder / INTERRUPTED
-        self._replace_folder(self.staging, place)
+        if (place / RESULTS).is_file():
+            shutil.rmtree(place)
+        self._move_all(place)
         return place
+
+    def _move_all(self, place: Path) -> None:
+        """Move the staged files one by one; what others have put there stays."""
+        (place / WAVEFORMS).mkdir(parents=True, exist_ok=True)
+        staged = [*sorted(self.waveforms.iterdir()), *sorted(f for f in self.staging.iterdir() if f.is_file())]
+        for file in staged:
+            file.replace(place / file.relative_to(self.staging))
+        shutil.rmtree(self.staging, ignore_errors=True)
 
     def discard(self) -> None:
         """Leave no trace of this run."""
@@ -74,7 +87,11 @@ class OutputFolder:
             for place in self._made:
                 place.rmdir()
 
-    def _replace_folder(self, new: Path, place: Path) -> None:
-        if place.exists():
-            shutil.rmtree(place)
-        new.replace(place)
+
+def _records_of(folder: Path) -> set[str]:
+    """Names of the waveforms that the results in a folder refer to; of none or unreadable results, nothing."""
+    try:
+        tests = json.loads((folder / RESULTS).read_bytes())["tests"]
+        return {Path(test["waveforms"]).stem for test in tests if test.get("waveforms")}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return set()

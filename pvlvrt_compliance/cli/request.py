@@ -1,7 +1,8 @@
 """What the user asked for, checked and turned into tests and parameters. Nothing is written or simulated here."""
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple, get_args
 
 from pydantic import ValidationError
 
@@ -9,12 +10,26 @@ from pvlvrt_compliance.errors import UsageError, did_you_mean
 from pvlvrt_compliance.profile.loading import known_profiles, load_profile
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
+from pvlvrt_compliance.scenario.files import load_events
 from pvlvrt_compliance.scenario.parameters import Parameters, parameters_from
-from pvlvrt_compliance.scenario.sag import PAIRS, Sag
+from pvlvrt_compliance.scenario.sag import PAIRS, Sag, Type
 from pvlvrt_compliance.study.selection import select
 from pvlvrt_compliance.units import parse_duration, parse_fraction
 
+# Options by the field of the scenario that they set: a message names what the user has typed.
+_OPTIONS = {
+    "frequency_hz": "--frequency",
+    "cell_temperature_c": "--temperature",
+    "scr": "--scr",
+    "xr": "--xr",
+    "vector_group": "--transformer",
+    "events": "--events",
+    "irradiance_w_m2": "--irradiance",
+    "point_on_wave_deg": "--point-on-wave",
+    "duration_s": "--duration",
+}
 _PHASES = ("abc", "a", "b", "c", *PAIRS)
+_TYPES = get_args(Type)
 
 
 class SagRequest(NamedTuple):
@@ -23,6 +38,7 @@ class SagRequest(NamedTuple):
     depth: str
     phases: str | None
     two_phase: bool
+    type: str | None
     duration: str | None
     point_on_wave_deg: float | None
     irradiance_w_m2: float | None
@@ -33,7 +49,8 @@ class Request(NamedTuple):
 
     profile: str
     sag: SagRequest | None
-    overrides: dict[str, float | None]
+    overrides: dict[str, float | str | None]
+    events: str | None
     assignments: tuple[str, ...]
     patterns: tuple[str, ...]
     output: str
@@ -60,27 +77,36 @@ def prepare(request: Request) -> Job:
         When the profile, an option or the selection cannot be used.
     """
     if not request.profile:
-        raise UsageError(f"--profile is missing; known profiles: {', '.join(known_profiles())}")
+        raise UsageError(f"--profile is missing; known profiles: {', '.join(known_profiles())} (--help has an example)")
     profile = load_profile(request.profile)
     parameters = parameters_from(request.assignments)
-    overrides = _given(request.overrides)
-    if request.sag is not None:
-        tests: tuple[TestCase, ...] = (_sag_test(profile, request.sag, overrides),)
-    else:
-        tests = select(profile.tests(**overrides), request.patterns)
+    try:
+        tests = _tests(profile, request)
+    except UsageError as error:
+        field, colon, rest = str(error).partition(":")
+        raise UsageError(_OPTIONS.get(field, field) + colon + rest) from None
     if not tests:
         raise UsageError(f"{profile.id}: the profile has no tests of its own; give one, for instance --sag 90%")
     return Job(profile, tests, parameters)
 
 
-def _given(fields: dict[str, float | None]) -> dict[str, float]:
+def _tests(profile: Profile, request: Request) -> tuple[TestCase, ...]:
+    overrides: dict[str, Any] = _given(request.overrides)
+    if request.events is not None:
+        overrides["events"] = load_events(request.events)
+    if request.sag is not None:
+        return (_sag_test(profile, request.sag, overrides),)
+    return select(profile.tests(**overrides), request.patterns)
+
+
+def _given(fields: Mapping[str, float | str | None]) -> dict[str, float | str]:
     for name, value in fields.items():
-        if value is not None and not math.isfinite(value):
+        if isinstance(value, float) and not math.isfinite(value):
             raise UsageError(f"{name}: {value} is not a number that can be used")
     return {name: value for name, value in fields.items() if value is not None}
 
 
-def _sag_test(profile: Profile, asked: SagRequest, overrides: dict[str, float]) -> TestCase:
+def _sag_test(profile: Profile, asked: SagRequest, overrides: dict[str, Any]) -> TestCase:
     fields: dict[str, Any] = overrides | _given(
         {"point_on_wave_deg": asked.point_on_wave_deg, "irradiance_w_m2": asked.irradiance_w_m2}
     )
@@ -92,11 +118,20 @@ def _sag(asked: SagRequest) -> Sag:
     phases = ("bc" if asked.two_phase else "abc") if asked.phases is None else asked.phases
     if phases not in _PHASES:
         raise UsageError(f"--phases {phases}: unknown; allowed are {', '.join(_PHASES)}{did_you_mean(phases, _PHASES)}")
+    if asked.type is not None and (asked.type not in _TYPES or asked.two_phase or len(phases) == 2):
+        raise UsageError(
+            f"--sag-type {asked.type}: allowed are {', '.join(_TYPES)}, with one phase or none, without --two-phase"
+        )
     if asked.two_phase and phases not in PAIRS:
         raise UsageError(f"--two-phase: a pair of phases is needed, {', '.join(PAIRS)}; not {phases!r}")
     try:
         return Sag.model_validate(
-            {"depth": parse_fraction(asked.depth, "--sag"), "phases": phases, "two_phase": asked.two_phase}
+            {
+                "depth": parse_fraction(asked.depth, "--sag"),
+                "phases": phases,
+                "two_phase": asked.two_phase,
+                "type": asked.type,
+            }
         )
     except ValidationError as error:  # pragma: no cover - every field has been checked above
         raise UsageError(str(error)) from None

@@ -16,14 +16,14 @@ from pvlvrt_compliance.control.dc_voltage_regulator import (
 from pvlvrt_compliance.control.lvrt import LvrtParams, lvrt_step
 from pvlvrt_compliance.control.modulator import ModulatorParams, modulate
 from pvlvrt_compliance.control.mppt import MpptParams, MpptState, mppt_step
-from pvlvrt_compliance.control.msogi_fll import MsogiFllParams, MsogiFllState, msogi_fll_step
+from pvlvrt_compliance.control.synchronisation import SynchronisationParams, SynchronisationState, synchronise
 from pvlvrt_compliance.kernel import kernel
 
 
 class ControllerParams(NamedTuple):
     """Parameters by block, and the sample time."""
 
-    sync: MsogiFllParams
+    sync: SynchronisationParams
     lvrt: LvrtParams
     dc_voltage: DcVoltageRegulatorParams
     mppt: MpptParams
@@ -36,7 +36,7 @@ class ControllerParams(NamedTuple):
 class ControllerState(NamedTuple):
     """States by block."""
 
-    sync: MsogiFllState
+    sync: SynchronisationState
     dc_voltage: DcVoltageRegulatorState
     mppt: MpptState
     current: CurrentRegulatorState
@@ -67,7 +67,7 @@ class ControllerSignals(NamedTuple):
 @kernel
 def controller_step(x: ControllerState, y: Measured, p: ControllerParams) -> tuple[ControllerState, ControllerSignals]:
     """Advance the controller by one sample."""
-    sync, grid = msogi_fll_step(x.sync, y.u_g_ab, p.sync, p.T)
+    sync, grid = synchronise(x.sync, y.u_g_ab, p.sync, p.T)
     order = lvrt_step(grid.u_pos, grid.u_neg, p.lvrt)
     dc_voltage, P_ref, limited = dc_voltage_regulator_step(
         x.dc_voltage, y.v_dc, x.mppt.v_ref, order.P_limit, p.dc_voltage, p.T

@@ -7,18 +7,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.vectors import scaled
 
 
 class GridTable(NamedTuple):
-    """Piecewise constant phasors: entry k holds from ``t[k]`` to ``t[k + 1]``; the last for ever."""
+    """Phasors along straight lines: entry k holds from ``t[k]`` to ``t[k + 1]``; the last for ever."""
 
     t: NDArray[np.float64]  # instants of change, the first before the run (s)
     theta: NDArray[np.float64]  # angle at t[k] (rad)
-    w: NDArray[np.float64]  # angular frequency (rad/s)
-    half_rate: NDArray[np.complex128]  # turn of exp(j theta) in half a plant step (-)
-    u_pos: NDArray[np.complex128]  # space vector of the positive sequence at angle 0 (V)
-    u_neg: NDArray[np.complex128]  # space vector of the negative sequence at angle 0 (V)
-    u_zero: NDArray[np.complex128]  # phasor of the zero sequence, peak, phase to neutral (V)
+    w: NDArray[np.float64]  # angular frequency at t[k] (rad/s)
+    dw: NDArray[np.float64]  # its rate of change (rad/s2)
+    u_pos: NDArray[np.complex128]  # space vector of the positive sequence at angle 0, at t[k] (V)
+    u_neg: NDArray[np.complex128]  # space vector of the negative sequence at angle 0, at t[k] (V)
+    u_zero: NDArray[np.complex128]  # phasor of the zero sequence, peak, phase to neutral, at t[k] (V)
+    du_pos: NDArray[np.complex128]  # rates of change of the three (V/s)
+    du_neg: NDArray[np.complex128]
+    du_zero: NDArray[np.complex128]
+    half_rate: NDArray[np.complex128]  # turn of exp(j theta) in half a plant step at w[k] (-)
+    half_step: float  # half a plant step (s)
+
+
+class HarmonicTable(NamedTuple):
+    """Harmonics of the source; each is there from ``t_on`` to ``t_off``."""
+
+    order: NDArray[np.int64]  # turns with that power of exp(j theta); negative: negative sequence (-)
+    u: NDArray[np.complex128]  # space vector at angle 0 (V)
+    u_zero: NDArray[np.complex128]  # phasor of a zero-sequence harmonic, peak (V)
+    t_on: NDArray[np.float64]  # (s)
+    t_off: NDArray[np.float64]  # (s)
 
 
 class Source(NamedTuple):
@@ -31,6 +47,8 @@ class Source(NamedTuple):
     u_zero: complex  # (V)
     turn: complex  # exp(j theta) at this instant (-)
     half_rate: complex  # turn of exp(j theta) in half a plant step (-)
+    du_pos: complex  # change of u_pos in half a plant step (V)
+    du_neg: complex  # change of u_neg in half a plant step (V)
 
 
 @kernel
@@ -39,36 +57,85 @@ def source_at(t: float, k: int, table: GridTable) -> Source:
     last = len(table.t) - 1
     while k < last and t >= table.t[k + 1]:
         k += 1
-    theta = table.theta[k] + table.w[k] * (t - table.t[k])
+    since = t - table.t[k]
+    theta = table.theta[k] + (table.w[k] + 0.5 * table.dw[k] * since) * since
+    half_rate = table.half_rate[k]
+    if table.dw[k] != 0.0:
+        more = table.dw[k] * since * table.half_step
+        half_rate = half_rate * complex(math.cos(more), math.sin(more))
     return Source(
         k=k,
         t_end=table.t[k + 1] if k < last else math.inf,
-        u_pos=table.u_pos[k],
-        u_neg=table.u_neg[k],
-        u_zero=table.u_zero[k],
+        u_pos=table.u_pos[k] + scaled(since, table.du_pos[k]),
+        u_neg=table.u_neg[k] + scaled(since, table.du_neg[k]),
+        u_zero=table.u_zero[k] + scaled(since, table.du_zero[k]),
         turn=complex(math.cos(theta), math.sin(theta)),
-        half_rate=table.half_rate[k],
+        half_rate=half_rate,
+        du_pos=scaled(table.half_step, table.du_pos[k]),
+        du_neg=scaled(table.half_step, table.du_neg[k]),
     )
 
 
 @kernel
-def turned(x: Source, by: complex) -> Source:
-    """Source with its angle turned, within its entry."""
+def later(x: Source, by: complex, halves: float) -> Source:
+    """Source some half plant steps later, within its entry; ``by`` is the turn in that time."""
     return Source(
-        k=x.k, t_end=x.t_end, u_pos=x.u_pos, u_neg=x.u_neg, u_zero=x.u_zero, turn=x.turn * by, half_rate=x.half_rate
+        k=x.k,
+        t_end=x.t_end,
+        u_pos=x.u_pos + scaled(halves, x.du_pos),
+        u_neg=x.u_neg + scaled(halves, x.du_neg),
+        u_zero=x.u_zero,
+        turn=x.turn * by,
+        half_rate=x.half_rate,
+        du_pos=x.du_pos,
+        du_neg=x.du_neg,
     )
 
 
 @kernel
 def half_step_later(x: Source) -> Source:
     """Source half a plant step later, within its entry."""
-    return turned(x, x.half_rate)
+    return later(x, x.half_rate, 1.0)
 
 
 @kernel
 def step_later(x: Source) -> Source:
     """Source one plant step later, within its entry."""
-    return turned(x, x.half_rate * x.half_rate)
+    return later(x, x.half_rate * x.half_rate, 2.0)
+
+
+@kernel
+def power_of(turn: complex, order: int) -> complex:
+    """exp(j order theta) from exp(j theta), by squaring."""
+    base = turn if order >= 0 else turn.conjugate()
+    n = abs(order)
+    result = 1 + 0j
+    while n > 0:
+        if n & 1:
+            result = result * base
+        base = base * base
+        n >>= 1
+    return result
+
+
+@kernel
+def harmonic_voltage(x: Source, t: float, table: HarmonicTable) -> complex:
+    """Space vector of the harmonics at an instant (V)."""
+    u = 0j
+    for k in range(len(table.order)):
+        if table.t_on[k] <= t < table.t_off[k]:
+            u += table.u[k] * power_of(x.turn, table.order[k])
+    return u
+
+
+@kernel
+def harmonic_zero_sequence(x: Source, t: float, table: HarmonicTable) -> float:
+    """Zero sequence of the harmonics at an instant, phase to neutral (V)."""
+    u = 0.0
+    for k in range(len(table.order)):
+        if table.t_on[k] <= t < table.t_off[k]:
+            u += (table.u_zero[k] * power_of(x.turn, table.order[k])).real
+    return u
 
 
 @kernel

@@ -3,6 +3,9 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from pvlvrt_compliance.kernel import kernel
 from pvlvrt_compliance.vectors import scaled
 
@@ -15,6 +18,22 @@ class LineParams(NamedTuple):
     k_u: float  # share of u_inv at the PCC (-)
     k_e: float  # share of the source at the PCC (-)
     k_i: float  # volts at the PCC per ampere (ohm)
+
+
+class LineTable(NamedTuple):
+    """Lines by the entry of the grid's breakpoints."""
+
+    decay: NDArray[np.float64]
+    gain: NDArray[np.float64]
+    k_u: NDArray[np.float64]
+    k_e: NDArray[np.float64]
+    k_i: NDArray[np.float64]
+
+
+@kernel
+def line_at(k: int, table: LineTable) -> LineParams:
+    """Line that goes with an entry of the grid's breakpoints."""
+    return LineParams(decay=table.decay[k], gain=table.gain[k], k_u=table.k_u[k], k_e=table.k_e[k], k_i=table.k_i[k])
 
 
 @kernel

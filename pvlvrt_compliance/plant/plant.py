@@ -5,15 +5,18 @@ from typing import NamedTuple
 from pvlvrt_compliance.kernel import kernel
 from pvlvrt_compliance.plant.grid import (
     GridTable,
+    HarmonicTable,
     Source,
     half_step_later,
+    harmonic_voltage,
+    harmonic_zero_sequence,
     source_at,
     source_voltage,
     step_later,
     zero_sequence,
 )
 from pvlvrt_compliance.plant.inverter import Bridge, freewheeling, limit_modulation, modulated
-from pvlvrt_compliance.plant.line import LineParams, line_step, pcc_voltage
+from pvlvrt_compliance.plant.line import LineParams, LineTable, line_at, line_step, pcc_voltage
 from pvlvrt_compliance.plant.protection import (
     NO_TRIP,
     ProtectionParams,
@@ -23,6 +26,7 @@ from pvlvrt_compliance.plant.protection import (
     undervoltage_limit,
 )
 from pvlvrt_compliance.plant.pv_array import PvParams, array_current, diode_voltage
+from pvlvrt_compliance.plant.weather import IrradianceTable, irradiance_at
 from pvlvrt_compliance.vectors import scaled
 
 
@@ -43,6 +47,9 @@ class PlantTables(NamedTuple):
     """What is looked up in arrays, once a control period."""
 
     grid: GridTable
+    harmonics: HarmonicTable
+    lines: LineTable
+    irradiance: IrradianceTable
     undervoltage: UndervoltageCurve
 
 
@@ -88,11 +95,27 @@ def terminal_voltage(x: PlantState, i: complex, u_inv: complex, e: complex, p: P
 
 
 @kernel
-def observe(x: PlantState, m: complex, source: Source, p: PlantParams) -> Observed:
-    """Voltages at the instant of a state and its source, under the modulating signal that has led to it."""
-    e = source_voltage(source)
+def as_at(t: float, k: int, p: PlantParams, tables: PlantTables) -> PlantParams:
+    """Parameters as they are at an instant (s) in entry ``k`` of the grid's breakpoints: line and irradiance change."""
+    return PlantParams(
+        pv=p.pv,
+        line=line_at(k, tables.lines),
+        protection=p.protection,
+        C=p.C,
+        G=irradiance_at(t, tables.irradiance),
+        t_breaker=p.t_breaker,
+        T_S=p.T_S,
+        ratio=p.ratio,
+    )
+
+
+@kernel
+def observe(x: PlantState, m: complex, source: Source, t: float, p: PlantParams, tables: PlantTables) -> Observed:
+    """Voltages at the instant ``t`` (s) of a state and its source, as the period begins in which ``m`` acts."""
+    e = source_voltage(source) + harmonic_voltage(source, t, tables.harmonics)
     u_inv = bridge(limit_modulation(m), x.i, x.v_dc, x.trip != NO_TRIP).u
-    return Observed(u_ab=terminal_voltage(x, x.i, u_inv, e, p), u0_ab=e, u_zero=zero_sequence(source))
+    zero = zero_sequence(source) + harmonic_zero_sequence(source, t, tables.harmonics)
+    return Observed(u_ab=terminal_voltage(x, x.i, u_inv, e, p), u0_ab=e, u_zero=zero)
 
 
 @kernel
@@ -129,17 +152,22 @@ def plant_step(x: PlantState, m: complex, e: complex, u_min: float, p: PlantPara
 def advance(x: PlantState, m: complex, source: Source, t: float, p: PlantParams, tables: PlantTables) -> PlantState:
     """Advance by one control period under the modulating signal given for it.
 
-    ``source`` is the grid at the beginning, the instant ``t`` (s). A breakpoint within the period takes effect in the
-    plant step whose middle it precedes.
+    ``source`` and ``p`` are the grid and the parameters at the beginning, the instant ``t`` (s). A breakpoint within
+    the period takes effect in the plant step whose middle it precedes; the line and the irradiance change with the
+    next period, so that what follows from them alone is computed once a period.
     """
     m = limit_modulation(m)
     u_min = undervoltage_limit(x.relay, p.protection, tables.undervoltage)
     source = half_step_later(source)
+    distorted = len(tables.harmonics.order) > 0
     for n in range(p.ratio):
         t_mid = t + (n + 0.5) * p.T_S
         if n > 0:
             source = step_later(source)
         if t_mid >= source.t_end:
             source = source_at(t_mid, source.k, tables.grid)
-        x = plant_step(x, m, source_voltage(source), u_min, p)
+        e = source_voltage(source)
+        if distorted:  # tables go no further than this branch: passing them on costs more than a whole step
+            e += harmonic_voltage(source, t_mid, tables.harmonics)
+        x = plant_step(x, m, e, u_min, p)
     return x

@@ -42,8 +42,8 @@ def sag_interval(scenario: Mapping[str, Any]) -> Interval | None:
 def facts(scenario: Mapping[str, Any]) -> list[Fact]:
     """Properties of a scenario in the order given; those that this module does not know are shown as they are."""
     sag = [Fact("sag", describe_sag(_sag(scenario)))] if _sag(scenario) else []
-    known = [_fact(name, value) for name, value in scenario.items() if name not in {"sag", "scr", "xr"}]
-    return sag + known + _grid(scenario)
+    known = [_fact(name, value) for name, value in scenario.items() if name not in {"sag", "scr", "xr", "events"}]
+    return sag + known + _grid(scenario) + [_event(event) for event in scenario.get("events", ())]
 
 
 def describe_sag(sag: Mapping[str, Any]) -> str:
@@ -52,10 +52,21 @@ def describe_sag(sag: Mapping[str, Any]) -> str:
     if depth == 0:
         return "none"
     phases = str(sag.get("phases", "abc"))
+    if sag.get("type"):
+        return f"type {sag['type']}, {100 * depth:g} %, {100 * (1 - depth):.4g} % left"
     if sag.get("two_phase"):
         return f"{100 * depth:g} % of the line-to-line voltage {phases}, {100 * (1 - depth):.4g} % left"
     which = "all three phases" if phases == "abc" else " and ".join(["phase " + phases[0], *phases[1:]])
     return f"{100 * depth:g} % in {which}, {100 * (1 - depth):.4g} % left"
+
+
+def _event(event: Mapping[str, Any]) -> Fact:
+    """An event besides the sag, its fields as a scenario file spells them; what is left open is left out."""
+    said = {name: value for name, value in event.items() if name != "kind" and value is not None}
+    text = ", ".join(
+        f"{name} {describe_sag(value) if name == 'sag' else value}" for name, value in sorted(said.items())
+    )
+    return Fact(str(event.get("kind", "event")).replace("_", " "), text)
 
 
 def _sag(scenario: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterable
 from itertools import pairwise
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Literal, Self, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError, model_validator
 
@@ -11,6 +11,10 @@ from pvlvrt_compliance.errors import UsageError, did_you_mean
 
 Positive = Annotated[FiniteFloat, Field(gt=0)]
 NotNegative = Annotated[FiniteFloat, Field(ge=0)]
+PhaseValues = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
+
+PowerStrategy = Literal["constant-p-q", "constant-p-light-q", "constant-p-sinusoidal", "constant-q", "balanced"]
+Synchronisation = Literal["msogi-fll", "dsogi-fll", "srf-pll", "ddsrf-pll", "dsc-pll"]
 
 
 class _Group(BaseModel):
@@ -64,13 +68,23 @@ class ProtectionParameters(_Group):
 class ControllerParameters(_Group):
     """The control subsystem (Table 3); what the paper leaves open is said so."""
 
+    synchronisation: Synchronisation = "msogi-fll"
     sogi_gain: Positive = Field(default=2**0.5, description="K")
     fll_gain: NotNegative = Field(default=50.0, description="Gamma (1/s)")
-    fll_frequency_min_hz: Positive = Field(default=40.0, description="guard, not in the paper")
-    fll_frequency_max_hz: Positive = Field(default=70.0, description="guard, not in the paper")
+    fll_frequency_min_hz: Positive = Field(default=40.0, description="guard of every synchronisation, not in the paper")
+    fll_frequency_max_hz: Positive = Field(default=70.0, description="guard of every synchronisation, not in the paper")
+    pll_bandwidth_hz: Positive = Field(default=10.0, description="natural frequency of a PLL; not in the paper")
+    pll_damping: Positive = Field(default=2**-0.5, description="damping of a PLL; not in the paper")
+    pnsd_notch_damping: Positive = Field(
+        default=2**-0.5, description="damping of the srf-pll's notch at twice the frequency; not in the paper"
+    )
+    ddsrf_filter_ratio: Positive = Field(
+        default=2**-0.5, description="cut-off of the ddsrf-pll's filters by the grid's frequency; not in the paper"
+    )
     fault_threshold_pu: Positive = Field(default=0.85, description="a fault is flagged below it")
     reactive_plateau_voltage_pu: NotNegative = Field(default=0.5, description="eq (9): full reactive power below it")
     reactive_plateau_pu: NotNegative = Field(default=0.75, description="eq (9): full reactive power")
+    power_strategy: PowerStrategy = "constant-p-sinusoidal"
     sequence_difference_min_pu: Positive = Field(
         default=0.005, description="below this V+ - V- the current reference is zero; guard, not in the paper"
     )
@@ -88,6 +102,9 @@ class ControllerParameters(_Group):
     mppt_step_v: NotNegative = Field(default=0.5, description="size of a perturbation; not in the paper")
     mppt_voltage_min_v: NotNegative = Field(default=600.0, description="lower limit of v*_DC; not in the paper")
     mppt_voltage_max_v: Positive = Field(default=1000.0, description="upper limit of v*_DC; not in the paper")
+    computation_delay_samples: int = Field(
+        default=1, ge=0, le=20, description="from a sample to the period in which its modulating signal acts"
+    )
     grid_voltage_feedforward: bool = Field(default=False, description="the paper names none")
 
     @model_validator(mode="after")
@@ -102,12 +119,37 @@ class ControllerParameters(_Group):
         return self
 
 
+class SensorParameters(_Group):
+    """What lies between the plant and the controller's numbers; the defaults are ideal."""
+
+    adc_bits: int = Field(default=0, ge=0, le=24, description="resolution over the range; 0: none, and no range")
+    voltage_range_v: Positive = Field(default=600.0, description="grid voltages, both signs")
+    current_range_a: Positive = Field(default=3000.0, description="phase currents, both signs")
+    dc_voltage_range_v: Positive = Field(default=1500.0, description="from 0")
+    pv_current_range_a: Positive = Field(default=1000.0, description="from 0")
+    voltage_gain: PhaseValues = (1.0, 1.0, 1.0)
+    current_gain: PhaseValues = (1.0, 1.0, 1.0)
+    dc_voltage_gain: FiniteFloat = 1.0
+    pv_current_gain: FiniteFloat = 1.0
+    voltage_offset_v: PhaseValues = (0.0, 0.0, 0.0)
+    current_offset_a: PhaseValues = (0.0, 0.0, 0.0)
+    dc_voltage_offset_v: FiniteFloat = 0.0
+    pv_current_offset_a: FiniteFloat = 0.0
+    voltage_noise_v: NotNegative = Field(default=0.0, description="standard deviation")
+    current_noise_a: NotNegative = 0.0
+    dc_voltage_noise_v: NotNegative = 0.0
+    pv_current_noise_a: NotNegative = 0.0
+    noise_seed: int = Field(default=0, ge=0, description="the same seed gives the same noise")
+    measurement_delay_samples: int = Field(default=0, ge=0, le=20)
+
+
 class Parameters(_Group):
     """All parameters of a run but its scenario."""
 
     simulation: SimulationParameters = SimulationParameters()
     plant: PlantParameters = PlantParameters()
     protection: ProtectionParameters = ProtectionParameters()
+    sensors: SensorParameters = SensorParameters()
     controller: ControllerParameters = ControllerParameters()
 
 
@@ -121,7 +163,7 @@ def parameter_names() -> list[str]:
 
 
 def parameters_from(assignments: Iterable[str]) -> Parameters:
-    """Defaults with ``group.name=value`` applied; values are written as in JSON.
+    """Defaults with ``group.name=value`` applied; values are written as in JSON, words also without quotes.
 
     Raises
     ------
@@ -142,16 +184,29 @@ def parameters_from(assignments: Iterable[str]) -> Parameters:
             raise UsageError(f"--set {name}: given twice")
         groups[group][key] = _value(name, text)
     try:
-        return Parameters.model_validate(groups)
+        # As JSON and strict: a list is a tuple there, but neither true nor "1.2" is a number.
+        return Parameters.model_validate_json(json.dumps(groups), strict=True)
     except ValidationError as error:
         raise UsageError("; ".join(_problem(e["loc"], e["msg"]) for e in error.errors())) from None
 
 
+def _takes_words(name: str) -> bool:
+    group, _, key = name.partition(".")
+    annotation: Any = Parameters.model_fields[group].annotation
+    return get_origin(annotation.model_fields[key].annotation) is Literal
+
+
 def _value(name: str, text: str) -> Any:
     try:
-        return json.loads(text)
-    except json.JSONDecodeError:
+        return json.loads(text, parse_constant=_refuse)
+    except (ValueError, RecursionError):
+        if _takes_words(name):
+            return text.strip()
         raise UsageError(f"--set {name}: {text!r} is not a value; write a number, true, false, null or [..]") from None
+
+
+def _refuse(constant: str) -> None:
+    raise ValueError(f"{constant} is not a number that can be used")
 
 
 def _problem(location: tuple[int | str, ...], message: str) -> str:

@@ -2,6 +2,7 @@
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from pvlvrt_compliance.scenario.events import Event
 from pvlvrt_compliance.scenario.sag import Sag
 
 FREQUENCY_MIN_HZ = 45.0
@@ -32,8 +33,14 @@ class Scenario(BaseModel):
     cell_temperature_c: float = Field(default=25.0, ge=-40, le=90)
     scr: float | None = Field(default=None, gt=0.5, description="short-circuit ratio on 500 kVA; none: stiff")
     xr: float = Field(default=10.0, gt=0, description="X/R of the grid impedance")
+    vector_group: str | None = Field(
+        default=None,
+        pattern=r"^(D|Y|YN)(d|y|yn)(1[01]|[0-9])$",
+        description="of the transformer beyond which sags happen, Dyn11 for instance; none: at the terminals",
+    )
     before_s: float = Field(default=0.3, ge=0.25, le=60, description="record before the sag")
     after_s: float = Field(default=1.1, ge=0.1, le=120, description="record after clearing")
+    events: tuple[Event, ...] = Field(default=(), description="what happens besides; times from the start of the sag")
 
     @property
     def start_s(self) -> float:

@@ -13,9 +13,11 @@ from pvlvrt_compliance.control.controller import (
     Measured,
     controller_step,
 )
+from pvlvrt_compliance.control.delays import acting, put
+from pvlvrt_compliance.control.hardware import Hardware, read
 from pvlvrt_compliance.kernel import cached_kernel, kernel
 from pvlvrt_compliance.plant.grid import source_at
-from pvlvrt_compliance.plant.plant import Observed, PlantParams, PlantState, PlantTables, advance, observe
+from pvlvrt_compliance.plant.plant import Observed, PlantParams, PlantState, PlantTables, advance, as_at, observe
 from pvlvrt_compliance.space_vectors import SQRT2_3, SQRT3_2
 
 COMPLETED, NOT_FINITE = range(2)
@@ -74,12 +76,13 @@ def run(
     plant_params: PlantParams,
     tables: PlantTables,
     controller_params: ControllerParams,
+    hardware: Hardware,
     samples: NDArray[np.float64],
 ) -> Outcome:
     """Simulate from control period ``first`` (negative: unrecorded settling) to the end of ``samples``.
 
     The controller samples at the beginning of a period; what it computes acts from the next period on, held for one:
-    1.5 periods in all. Sample n is at n T_reg.
+    1.5 periods in all, unless ``hardware`` says otherwise. Sample n is at n T_reg.
 
     Parameters
     ----------
@@ -96,13 +99,21 @@ def run(
         t = n * T_reg
         source = source_at(t, k_grid, tables.grid)
         k_grid = source.k
-        y = observe(plant, m, source, plant_params)
+        if not hardware.ideal:
+            m = acting(hardware.lines, n - first)
+        now = as_at(t, k_grid, plant_params, tables)
+        y = observe(plant, m, source, t, now, tables)
         sampled = Measured(u_g_ab=y.u_ab, i_ab=plant.i, v_dc=plant.v_dc, i_pv=plant.i_pv)
+        if not hardware.ideal:
+            sampled = read(sampled, y.u_zero, n, first, hardware)
         controller, signals = controller_step(controller, sampled, controller_params)
         if not is_finite(plant, signals):
             return Outcome(status=NOT_FINITE, samples=max(n, 0), plant=plant)
         if n >= 0:
-            record(samples[n], plant, y, signals, plant_params.G)
-        plant = advance(plant, m, source, t, plant_params, tables)
+            record(samples[n], plant, y, signals, now.G)
+        if not hardware.ideal:
+            put(hardware.lines, n - first, signals.m)
+            m = acting(hardware.lines, n - first)
+        plant = advance(plant, m, source, t, now, tables)
         m = signals.m
     return Outcome(status=COMPLETED, samples=len(samples), plant=plant)

@@ -8,6 +8,7 @@ from pvlvrt_compliance.errors import SimulationError
 from pvlvrt_compliance.plant import pv_array
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.electronics import hardware_of
 from pvlvrt_compliance.simulation.loop import CHANNELS, COMPLETED, run
 from pvlvrt_compliance.simulation.translate import (
     control_period_s,
@@ -44,7 +45,8 @@ def simulate(scenario: Scenario, parameters: Parameters, run=run) -> Waveforms: 
     settling = math.ceil(parameters.simulation.settling_s / T_reg)
     samples = np.empty((math.floor(scenario.end_s / T_reg) + 1, len(CHANNELS)))
     start = steady_state(plant, tables.grid, controller, scenario, -settling * T_reg)
-    outcome = run(start.plant, start.controller, start.m, -settling, plant, tables, controller, samples)
+    hardware = hardware_of(parameters, start, settling + len(samples))
+    outcome = run(start.plant, start.controller, start.m, -settling, plant, tables, controller, hardware, samples)
     if outcome.status != COMPLETED:
         raise SimulationError(f"a number stopped being finite at {outcome.samples * T_reg:.4f} s")
     columns = np.ascontiguousarray(samples.T)

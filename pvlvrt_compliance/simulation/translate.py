@@ -1,34 +1,58 @@
 """The one place where words with units become the symbols of the kernels, and where a run's first state is made."""
 
-import cmath
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
-from pvlvrt_compliance.control import dc_voltage_regulator, mppt, msogi_fll
+from pvlvrt_compliance.control import current_references, dc_voltage_regulator, fll, mppt, pll, synchronisation
 from pvlvrt_compliance.control.controller import ControllerParams, ControllerState
 from pvlvrt_compliance.control.current_references import CurrentReferenceParams
 from pvlvrt_compliance.control.current_regulator import CurrentRegulatorParams, at_rest_regulator
 from pvlvrt_compliance.control.dc_voltage_regulator import DcVoltageRegulatorParams
+from pvlvrt_compliance.control.ddsrf_pll import DdsrfPllParams
 from pvlvrt_compliance.control.lvrt import LvrtParams
 from pvlvrt_compliance.control.modulator import ModulatorParams
 from pvlvrt_compliance.control.mppt import MpptParams
+from pvlvrt_compliance.control.srf_pll import SrfPllParams
+from pvlvrt_compliance.control.synchronisation import SynchronisationParams
 from pvlvrt_compliance.kernel import plain
-from pvlvrt_compliance.plant import line, pv_array
+from pvlvrt_compliance.plant import pv_array
 from pvlvrt_compliance.plant.grid import GridTable
 from pvlvrt_compliance.plant.inverter import K_PWM, M_MAX
 from pvlvrt_compliance.plant.plant import PlantParams, PlantState, PlantTables
 from pvlvrt_compliance.plant.protection import NO_TRIP, ProtectionParams, UndervoltageCurve, relays_at_rest
 from pvlvrt_compliance.plant.pv_array import STC_IRRADIANCE, PvParams
-from pvlvrt_compliance.scenario.parameters import Parameters
+from pvlvrt_compliance.scenario.parameters import ControllerParameters, Parameters, PowerStrategy, Synchronisation
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.surroundings import (
+    grid_table,
+    harmonic_table,
+    irradiance_table,
+    line_of,
+    line_table,
+)
 from pvlvrt_compliance.sogi import in_steady_state
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.vectors import rotation
 
-_SQRT3_2 = math.sqrt(1.5)  # length of a power-invariant space vector per unit of phase amplitude
 _FREQUENCY_BAND_HZ = 5.0  # default setting of the frequency relay around nominal
+
+_STRATEGIES: Mapping[PowerStrategy, int] = {
+    "constant-p-q": current_references.CONSTANT_P_Q,
+    "constant-p-light-q": current_references.CONSTANT_P_LIGHT_Q,
+    "constant-p-sinusoidal": current_references.CONSTANT_P_SINUSOIDAL,
+    "constant-q": current_references.CONSTANT_Q,
+    "balanced": current_references.BALANCED,
+}
+_ALGORITHMS: Mapping[Synchronisation, int] = {
+    "msogi-fll": synchronisation.MSOGI_FLL,
+    "dsogi-fll": synchronisation.DSOGI_FLL,
+    "srf-pll": synchronisation.SRF_PLL,
+    "ddsrf-pll": synchronisation.DDSRF_PLL,
+    "dsc-pll": synchronisation.DSC_PLL,
+}
 
 
 class Start(NamedTuple):
@@ -37,6 +61,7 @@ class Start(NamedTuple):
     plant: PlantState
     controller: ControllerState
     m: complex  # modulating signal of the first period (-)
+    u_g_ab: complex  # grid voltage (V)
 
 
 def nominal_of(parameters: Parameters, scenario: Scenario) -> Nominal:
@@ -64,26 +89,6 @@ def control_period_s(parameters: Parameters) -> float:
     return parameters.simulation.control_ratio * plant_step_s(parameters)
 
 
-def grid_table(scenario: Scenario, nominal: Nominal, T_S: float) -> GridTable:
-    """Source that sags by the scenario: healthy, sagged from its start, healthy from its clearing."""
-    w = 2 * math.pi * scenario.frequency_hz
-    pos, neg, zero = scenario.sag.sequences_pu()
-    start, clear = scenario.start_s, scenario.clear_s
-    t = np.array([-1e3, start, clear])  # settling is shorter, and angles keep their digits
-    peak = nominal.phase_voltage_peak_v
-    angle = math.radians(scenario.point_on_wave_deg)
-    return GridTable(
-        t=t,
-        theta=np.remainder(angle + w * (t - start), 2 * math.pi),
-        w=np.full(3, w),
-        half_rate=np.full(3, cmath.exp(0.5j * w * T_S)),
-        u_pos=_SQRT3_2 * peak * np.array([1, pos, 1], dtype=np.complex128),
-        # A negative-sequence phasor turns backwards as a space vector: its angle changes sign.
-        u_neg=_SQRT3_2 * peak * np.array([0, neg.conjugate(), 0], dtype=np.complex128),
-        u_zero=peak * np.array([0, zero, 0], dtype=np.complex128),
-    )
-
-
 def protection_params(parameters: Parameters, nominal: Nominal) -> ProtectionParams:
     """Settings of the relays."""
     p = parameters.protection
@@ -109,12 +114,9 @@ def plant_params(parameters: Parameters, scenario: Scenario) -> PlantParams:
     p = parameters.plant
     nominal = nominal_of(parameters, scenario)
     T_S = plant_step_s(parameters)
-    Z = nominal.impedance_ohm / scenario.scr if scenario.scr is not None else 0.0
-    R_g = Z / math.hypot(1, scenario.xr)
-    L_g = R_g * scenario.xr / (2 * math.pi * nominal.frequency_hz)
     return PlantParams(
         pv=pv_params(parameters, scenario),
-        line=line.design(p.filter_inductance_h, p.filter_resistance_ohm, L_g, R_g, T_S),
+        line=line_of(parameters, nominal, scenario.scr, scenario.xr, T_S),
         protection=protection_params(parameters, nominal),
         C=p.dc_link_capacitance_f,
         G=scenario.irradiance_w_m2 / STC_IRRADIANCE,
@@ -125,11 +127,29 @@ def plant_params(parameters: Parameters, scenario: Scenario) -> PlantParams:
 
 
 def plant_tables(parameters: Parameters, scenario: Scenario) -> PlantTables:
-    """What the plant looks up: the grid's events and the undervoltage curve."""
+    """What the plant looks up: the events of grid and weather, and the undervoltage curve."""
+    nominal = nominal_of(parameters, scenario)
+    T_S = plant_step_s(parameters)
     curve = np.array(parameters.protection.undervoltage_curve, dtype=np.float64)
     return PlantTables(
-        grid=grid_table(scenario, nominal_of(parameters, scenario), plant_step_s(parameters)),
+        grid=grid_table(scenario, nominal, T_S),
+        harmonics=harmonic_table(scenario, nominal),
+        lines=line_table(scenario, parameters, nominal, T_S),
+        irradiance=irradiance_table(scenario),
         undervoltage=UndervoltageCurve(t=curve[:, 0].copy(), u=curve[:, 1].copy()),
+    )
+
+
+def synchronisation_params(c: ControllerParameters, u_nom: float) -> SynchronisationParams:
+    """Parameters of every synchronisation, and which is chosen; ``u_nom`` is |u_ab| nominal (V)."""
+    guards = (c.fll_frequency_min_hz, c.fll_frequency_max_hz, u_nom)
+    loop = pll.design(c.pll_bandwidth_hz, c.pll_damping, *guards)
+    return SynchronisationParams(
+        algorithm=_ALGORITHMS[c.synchronisation],
+        fll=fll.design(c.sogi_gain, c.fll_gain, *guards),
+        srf=SrfPllParams(pll=loop, K=2 * c.pnsd_notch_damping),
+        ddsrf=DdsrfPllParams(pll=loop, ratio=c.ddsrf_filter_ratio),
+        dsc=loop,
     )
 
 
@@ -140,7 +160,7 @@ def controller_params(parameters: Parameters, scenario: Scenario) -> ControllerP
     T_reg = control_period_s(parameters)
     u_nom = nominal.voltage_ab_v
     return ControllerParams(
-        sync=msogi_fll.design(c.sogi_gain, c.fll_gain, c.fll_frequency_min_hz, c.fll_frequency_max_hz, u_nom),
+        sync=synchronisation_params(c, u_nom),
         lvrt=LvrtParams(
             S_nom=nominal.apparent_power_va,
             u_nom=u_nom,
@@ -155,7 +175,10 @@ def controller_params(parameters: Parameters, scenario: Scenario) -> ControllerP
             v_min=c.mppt_voltage_min_v,
             v_max=c.mppt_voltage_max_v,
         ),
-        references=CurrentReferenceParams(u_pos_less_neg_min=c.sequence_difference_min_pu * u_nom),
+        references=CurrentReferenceParams(
+            strategy=_STRATEGIES[c.power_strategy],
+            u_pos_less_neg_min=c.sequence_difference_min_pu * u_nom,
+        ),
         current=CurrentRegulatorParams(
             K_P=c.pr_proportional_gain,
             K_I=c.pr_integral_gain,
@@ -204,10 +227,11 @@ def steady_state(
             closed=True,
         ),
         controller=ControllerState(
-            sync=msogi_fll.locked(u, w),
+            sync=synchronisation.locked(u, w, controller.sync, controller.T),
             dc_voltage=dc_voltage_regulator.settled(P, v_dc, v_ref, controller.dc_voltage),
             mppt=mppt.searching_from(v_ref),
             current=regulator,
         ),
         m=m,
+        u_g_ab=u,
     )

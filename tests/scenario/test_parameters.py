@@ -62,10 +62,13 @@ def test_numbers_are_read_exactly(value):
         ("protection.frequency_min_hz=null", None),
         ("protection.undervoltage_curve=[[0, 0.5], [1, 0.85]]", ((0.0, 0.5), (1.0, 0.85))),
         (" plant.modules_in_series =21", 21),
+        ("controller.synchronisation=dsc-pll", "dsc-pll"),
+        ('controller.power_strategy="constant-q"', "constant-q"),
+        ("controller.power_strategy= balanced ", "balanced"),
     ],
 )
 def test_values_as_in_json(assignment, value):
-    """True, null, lists and numbers are written as in JSON."""
+    """True, null, lists and numbers are written as in JSON; words need no quotes."""
     parameters = parameters_from([assignment])
     assert value_of(parameters, assignment.partition("=")[0].strip()) == value
 
@@ -89,7 +92,10 @@ def test_several_assignments_in_several_groups():
         ("controller.sogi_gain=", "'' is not a value"),
         ("controller.sogi_gain=fast", "'fast' is not a value; write a number, true, false, null or"),
         ("controller.sogi_gain=0", "--set controller.sogi_gain: .*greater than 0"),
-        ("controller.sogi_gain=NaN", "finite"),
+        ("controller.sogi_gain=NaN", "is not a value"),
+        ("controller.sogi_gain=true", "valid number"),
+        ('controller.sogi_gain="1.2"', "valid number"),
+        ("controller.sogi_gain=" + "[" * 30_000, "is not a value"),
         ("controller.sogi_gain=1e999", "finite"),
         ("controller.sogi_gain=null", "--set controller.sogi_gain: .*number"),
         ("simulation.control_ratio=8.5", "--set simulation.control_ratio: .*integer"),
@@ -98,6 +104,9 @@ def test_several_assignments_in_several_groups():
         ("protection.undervoltage_curve=[]", "--set protection.undervoltage_curve: "),
         ("protection.undervoltage_curve=[[0,0],[0,1]]", "the times of undervoltage_curve must increase"),
         ("controller.fll_frequency_min_hz=80", "fll_frequency_min_hz must be below fll_frequency_max_hz"),
+        ("controller.synchronisation=pll", "--set controller.synchronisation: .*'msogi-fll', 'dsogi-fll', 'srf-pll'"),
+        ("controller.power_strategy=3", "--set controller.power_strategy: .*'constant-p-q'"),
+        ("controller.power_strategy=", "--set controller.power_strategy: .*'constant-p-q'"),
         ("controller.mppt_voltage_max_v=500", "mppt_voltage_min_v must be below mppt_voltage_max_v"),
         ("controller.fault_threshold_pu=0.4", "reactive_plateau_voltage_pu must be below fault_threshold_pu"),
     ],

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from pvlvrt_compliance.scenario.sag import PAIRS, Sag
+from pvlvrt_compliance.scenario.sag import PAIRS, Sag, through_transformer
 from pvlvrt_compliance.scenario.scenario import Scenario, nearest_nominal_frequency
 from pvlvrt_compliance.space_vectors import phases
 
@@ -128,3 +128,51 @@ def test_scenario_out_of_range(field):
     """Values outside their range and unknown names are refused."""
     with pytest.raises(ValidationError):
         Scenario(**({"sag": Sag(depth=0.9), "duration_s": 0.5} | field))
+
+
+# Bollen's types in the form V+ and V- have: closed forms of the characteristic voltage V, symmetrical phase a.
+TYPES = {
+    "A": lambda V: (V, 0, 0),
+    "B": lambda V: ((2 + V) / 3, -(1 - V) / 3, -(1 - V) / 3),
+    "C": lambda V: ((1 + V) / 2, (1 - V) / 2, 0),
+    "D": lambda V: ((1 + V) / 2, -(1 - V) / 2, 0),
+    "E": lambda V: ((1 + 2 * V) / 3, (1 - V) / 3, (1 - V) / 3),
+    "F": lambda V: ((1 + 2 * V) / 3, -(1 - V) / 3, 0),
+    "G": lambda V: ((1 + 2 * V) / 3, (1 - V) / 3, 0),
+}
+
+
+@settings(deadline=None)
+@given(DEPTHS, st.sampled_from(sorted(TYPES)))
+def test_types_a_to_g(depth, name):
+    """Each of Bollen's types has the sequences that its definition gives."""
+    assert Sag(depth=depth, type=name).sequences_pu() == pytest.approx(TYPES[name](1 - depth), abs=1e-12)
+
+
+@settings(deadline=None)
+@given(DEPTHS, st.sampled_from(sorted(TYPES)), st.sampled_from("abc"))
+def test_symmetrical_phase(depth, name, phase):
+    """Another symmetrical phase gives the same three magnitudes, moved on."""
+    a, b, c = (abs(u) for u in Sag(depth=depth, type=name).phasors_pu())
+    moved = {"a": (a, b, c), "b": (c, a, b), "c": (b, c, a)}[phase]
+    assert [abs(u) for u in Sag(depth=depth, type=name, phases=phase).phasors_pu()] == pytest.approx(moved)
+
+
+@settings(deadline=None)
+@given(DEPTHS, st.sampled_from([("B", 3.0, "Dyn11"), ("C", 1.0, "Dyn1"), ("E", 1.0, "Dyn5")]))
+def test_fault_beyond_a_delta_star_transformer(depth, case):
+    """Through a delta-star transformer type B is seen as C with V = (1 + 2 V')/3, C as D, and E as F."""
+    name, divisor, group = case
+    seen = {"B": "C", "C": "D", "E": "F"}[name]
+    found = through_transformer(Sag(depth=depth, type=name).sequences_pu(), group)
+    expected = Sag(depth=depth * (2 / divisor if name == "B" else 1), type=seen)
+    assert sorted(map(abs, phases(*found))) == pytest.approx(sorted(map(abs, expected.phasors_pu())), abs=1e-9)
+
+
+@settings(deadline=None)
+@given(DEPTHS)
+def test_star_star_transformer(depth):
+    """A star-star transformer takes the zero sequence away, and an earthed one takes nothing."""
+    sequences = Sag(depth=depth, phases="a").sequences_pu()
+    assert through_transformer(sequences, "Yyn0") == pytest.approx((sequences.positive, sequences.negative, 0))
+    assert through_transformer(sequences, "YNyn0") == pytest.approx(sequences)
