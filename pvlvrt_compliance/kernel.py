@@ -6,6 +6,7 @@ folder is therefore named after a digest of every kernel source, so that an edit
 
 import hashlib
 import os
+import types
 from collections.abc import Callable
 from functools import cache, partial
 from pathlib import Path
@@ -55,6 +56,16 @@ def plain(function: F) -> F:
     """The Python behind a kernel, for the odd call outside compiled code that is not worth compiling for."""
     python: F = getattr(function, "py_func", function)
     return python
+
+
+@cache
+def in_python(function: F) -> F:
+    """The Python behind a kernel and behind every kernel that it calls: to look at a block outside compiled code."""
+    source: Any = plain(function)
+    named = {name: source.__globals__.get(name) for name in source.__code__.co_names}
+    called = {name: in_python(block) for name, block in named.items() if hasattr(block, "py_func")}
+    python: Any = types.FunctionType(source.__code__, {**source.__globals__, **called}, source.__name__)
+    return python  # type: ignore[no-any-return]
 
 
 def cached_kernel(function: F) -> F:

@@ -3,12 +3,12 @@
 import math
 import types
 from collections.abc import Callable, Mapping
-from functools import cache
 from typing import Any
 
 import numba
 import pytest
 
+from pvlvrt_compliance import kernel as kernel_module
 from pvlvrt_compliance.control import controller, synchronisation
 from pvlvrt_compliance.control.dc_voltage_regulator import DcVoltageRegulatorState
 from pvlvrt_compliance.control.lvrt import LvrtOrder, lvrt_step
@@ -126,20 +126,13 @@ WRONG_PARTS = {
 }
 
 
-@cache
-def _in_python(block: Any) -> Any:
-    source = plain(block)
-    called = {name: source.__globals__[name] for name in source.__code__.co_names if name in source.__globals__}
-    return _with_globals(source, {name: _in_python(f) for name, f in called.items() if hasattr(f, "py_func")})
-
-
 @pytest.fixture(scope="session")
 def in_python() -> Callable[..., Any]:
     """Give the Python behind a kernel and behind every kernel that it calls.
 
     Kernels can only be called from compiled code; a test of a single block needs none of that.
     """
-    return _in_python
+    return kernel_module.in_python
 
 
 class WrongRuns(dict[str, Loop]):
