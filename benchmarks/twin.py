@@ -10,13 +10,14 @@ import subprocess
 from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple, get_type_hints
+from typing import Any, NamedTuple, get_args, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.control import controller, lvrt, synchronised
 from pvlvrt_compliance.control.hardware import Hardware
+from pvlvrt_compliance.control.msogi_fll import MsogiFllState
 from pvlvrt_compliance.plant import grid, inverter, plant, protection, pv_array
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
@@ -102,9 +103,16 @@ def compiler() -> str | None:
     return shutil.which("gcc")
 
 
+def _hints(named_tuple: Any) -> dict[str, Any]:
+    """Types of the fields; of those that may be none only what the default configuration has."""
+    hints = get_type_hints(named_tuple)
+    options = {name: (hint,) if hint in _SCALARS else get_args(hint) or (hint,) for name, hint in hints.items()}
+    return {name: of[0] for name, of in options.items() if type(None) not in of or of[0] is MsogiFllState}
+
+
 def _fields(named_tuple: Any) -> dict[str, _Field]:
     """Fields of a NamedTuple in C; a table of arrays gets one more, their common ``size``."""
-    hints = get_type_hints(named_tuple)
+    hints = _hints(named_tuple)
     fields = {
         name: _SCALARS[hint] if hint in _SCALARS else _Field(hint.__name__, _structure(hint))
         for name, hint in hints.items()
@@ -123,7 +131,7 @@ def _structure(named_tuple: Any) -> Any:
 
 def _nested(named_tuple: Any) -> list[Any]:
     """All NamedTuples that one consists of, itself last."""
-    hints = get_type_hints(named_tuple).values()
+    hints = _hints(named_tuple).values()
     return [inner for hint in hints if hint not in _SCALARS for inner in _nested(hint)] + [named_tuple]
 
 
@@ -141,9 +149,10 @@ def layout() -> str:
 
 def _packed(value: Any) -> Any:
     """Structure of ctypes with the values of a NamedTuple; arrays stay where they are."""
-    arrays = [x for x in value if isinstance(x, np.ndarray)]
-    members = [_member(x) for x in value] + [len(x) for x in arrays[:1]]
     named_tuple: Any = type(value)
+    present = [getattr(value, name) for name in _hints(named_tuple)]
+    arrays = [x for x in present if isinstance(x, np.ndarray)]
+    members = [_member(x) for x in present] + [len(x) for x in arrays[:1]]
     return _structure(named_tuple)(*members)
 
 
@@ -176,7 +185,7 @@ class Arguments(NamedTuple):
     plant_params: plant.PlantParams
     tables: plant.PlantTables
     controller_params: controller.ControllerParams
-    hardware: Hardware  # ideal: the twin has none
+    hardware: Hardware | None  # the twin has none
     samples: NDArray[np.float64]
 
     @property
@@ -226,7 +235,7 @@ class Twin:
         a = arguments
         if not (a.samples.flags.c_contiguous and a.samples.dtype == np.float64):
             raise ValueError("the twin writes contiguous float64 samples")
-        if not a.hardware.ideal:
+        if a.hardware is not None:
             raise ValueError("the twin has ideal hardware only")
         packed = [_packed(x) for x in (a.plant, a.controller, a.plant_params, a.tables, a.controller_params)]
         start, control, params, tables, control_params = map(ctypes.byref, packed)

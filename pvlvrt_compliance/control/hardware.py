@@ -12,9 +12,8 @@ from pvlvrt_compliance.kernel import kernel
 
 
 class Hardware(NamedTuple):
-    """All of it; where ``ideal``, nothing of it is applied and the modulating signal acts one period later."""
+    """All of it. A run without has ideal sensors, and its modulating signal acts one period later."""
 
-    ideal: bool
     sensors: SensorParams
     lines: DelayLines
     random: NDArray[np.float64]  # standard normal numbers, shape (periods or 1, 8)

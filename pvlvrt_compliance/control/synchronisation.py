@@ -28,24 +28,55 @@ class SynchronisationParams(NamedTuple):
 
 
 class SynchronisationState(NamedTuple):
-    """States of all algorithms; only that of the chosen one moves."""
+    """State of the chosen algorithm; the others are none. numba compiles the one that is there, and nothing else."""
 
-    msogi: MsogiFllState
-    dsogi: DsogiFllState
-    srf: SrfPllState
-    ddsrf: DdsrfPllState
-    dsc: DscPllState
+    msogi: MsogiFllState | None
+    dsogi: DsogiFllState | None
+    srf: SrfPllState | None
+    ddsrf: DdsrfPllState | None
+    dsc: DscPllState | None
 
 
 def locked(u_pos: complex, w: float, p: SynchronisationParams, T: float) -> SynchronisationState:
     """State locked to a balanced, clean grid at this angular frequency (rad/s), ``u_pos`` (V) in the next sample."""
+    chosen = p.algorithm
     return SynchronisationState(
-        msogi=msogi_fll.locked(u_pos, w),
-        dsogi=dsogi_fll.locked(u_pos, w),
-        srf=srf_pll.locked(u_pos, w, p.srf),
-        ddsrf=ddsrf_pll.locked(u_pos, w),
-        dsc=dsc_pll.locked(u_pos, w, p.dsc.w_min, T),
+        msogi=msogi_fll.locked(u_pos, w) if chosen == MSOGI_FLL else None,
+        dsogi=dsogi_fll.locked(u_pos, w) if chosen == DSOGI_FLL else None,
+        srf=srf_pll.locked(u_pos, w, p.srf) if chosen == SRF_PLL else None,
+        ddsrf=ddsrf_pll.locked(u_pos, w) if chosen == DDSRF_PLL else None,
+        dsc=dsc_pll.locked(u_pos, w, p.dsc.w_min, T) if chosen == DSC_PLL else None,
     )
+
+
+@kernel
+def advance_chosen(
+    msogi: MsogiFllState | None,
+    dsogi: DsogiFllState | None,
+    srf: SrfPllState | None,
+    ddsrf: DdsrfPllState | None,
+    dsc: DscPllState | None,
+    u_g_ab: complex,
+    p: SynchronisationParams,
+    T: float,
+) -> tuple[SynchronisationState, Synchronisation]:
+    """Advance the algorithm whose state is there. States are arguments, never assigned, so that numba sees the none."""
+    if msogi is not None:
+        msogi_next, msogi_y = msogi_fll_step(msogi, u_g_ab, p.fll, T)
+        return SynchronisationState(msogi=msogi_next, dsogi=None, srf=None, ddsrf=None, dsc=None), msogi_y
+    if dsogi is not None:
+        dsogi_next, dsogi_y = dsogi_fll_step(dsogi, u_g_ab, p.fll, T)
+        return SynchronisationState(msogi=None, dsogi=dsogi_next, srf=None, ddsrf=None, dsc=None), dsogi_y
+    if srf is not None:
+        srf_next, srf_y = srf_pll_step(srf, u_g_ab, p.srf, T)
+        return SynchronisationState(msogi=None, dsogi=None, srf=srf_next, ddsrf=None, dsc=None), srf_y
+    if ddsrf is not None:
+        ddsrf_next, ddsrf_y = ddsrf_pll_step(ddsrf, u_g_ab, p.ddsrf, T)
+        return SynchronisationState(msogi=None, dsogi=None, srf=None, ddsrf=ddsrf_next, dsc=None), ddsrf_y
+    if dsc is None:
+        raise ValueError("no synchronisation has a state")
+    dsc_next, dsc_y = dsc_pll_step(dsc, u_g_ab, p.dsc, T)
+    return SynchronisationState(msogi=None, dsogi=None, srf=None, ddsrf=None, dsc=dsc_next), dsc_y
 
 
 @kernel
@@ -53,15 +84,4 @@ def synchronise(
     x: SynchronisationState, u_g_ab: complex, p: SynchronisationParams, T: float
 ) -> tuple[SynchronisationState, Synchronisation]:
     """Advance the chosen synchronisation by one sample of the grid voltage (V)."""
-    msogi, dsogi, srf, ddsrf, dsc = x.msogi, x.dsogi, x.srf, x.ddsrf, x.dsc
-    if p.algorithm == MSOGI_FLL:
-        msogi, y = msogi_fll_step(msogi, u_g_ab, p.fll, T)
-    elif p.algorithm == DSOGI_FLL:
-        dsogi, y = dsogi_fll_step(dsogi, u_g_ab, p.fll, T)
-    elif p.algorithm == SRF_PLL:
-        srf, y = srf_pll_step(srf, u_g_ab, p.srf, T)
-    elif p.algorithm == DDSRF_PLL:
-        ddsrf, y = ddsrf_pll_step(ddsrf, u_g_ab, p.ddsrf, T)
-    else:
-        dsc, y = dsc_pll_step(dsc, u_g_ab, p.dsc, T)
-    return SynchronisationState(msogi=msogi, dsogi=dsogi, srf=srf, ddsrf=ddsrf, dsc=dsc), y
+    return advance_chosen(x.msogi, x.dsogi, x.srf, x.ddsrf, x.dsc, u_g_ab, p, T)

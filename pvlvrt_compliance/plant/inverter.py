@@ -6,10 +6,6 @@ from typing import NamedTuple
 from pvlvrt_compliance.kernel import kernel
 from pvlvrt_compliance.vectors import length, scaled
 
-AVERAGED, SWITCHED = range(2)
-"""Fidelities: the mean over a carrier period, or the legs as they switch."""
-FIDELITIES = ("averaged", "switched")
-"""Names of the fidelities by code."""
 K_PWM = 2 / 3
 """Inverter gain of Table 2: u_inv = K_PWM v_DC m."""
 M_MAX = 3 / (2 * math.sqrt(2))

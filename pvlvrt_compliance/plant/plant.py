@@ -16,7 +16,7 @@ from pvlvrt_compliance.plant.grid import (
     step_later,
     zero_sequence,
 )
-from pvlvrt_compliance.plant.inverter import SWITCHED, Bridge, freewheeling, limit_modulation, modulated
+from pvlvrt_compliance.plant.inverter import Bridge, freewheeling, limit_modulation, modulated
 from pvlvrt_compliance.plant.line import LineParams, LineTable, line_at, line_step, pcc_voltage
 from pvlvrt_compliance.plant.protection import (
     NO_TRIP,
@@ -38,13 +38,12 @@ class PlantParams(NamedTuple):
     pv: PvParams
     line: LineParams
     protection: ProtectionParams
-    devices: DeviceParams
+    devices: DeviceParams | None  # of the switched inverter; none: averaged. numba compiles only what is there
     C: float  # DC-link capacitance (F)
     G: float  # irradiance, in units of 1000 W/m2 (-)
     t_breaker: float  # after a trip the breaker parts by then, though current may still flow (s)
     T_S: float  # plant step (s)
     ratio: int  # plant steps in a control period, which is also the carrier's (-)
-    fidelity: int  # AVERAGED or SWITCHED
 
 
 class PlantTables(NamedTuple):
@@ -123,23 +122,23 @@ def as_at(t: float, k: int, p: PlantParams, tables: PlantTables) -> PlantParams:
         t_breaker=p.t_breaker,
         T_S=p.T_S,
         ratio=p.ratio,
-        fidelity=p.fidelity,
     )
 
 
 @kernel
-def inverter_voltage(x: PlantState, m: complex, p: PlantParams) -> complex:
+def inverter_voltage(x: PlantState, m: complex, devices: DeviceParams | None) -> complex:
     """Inverter voltage (V) that sensors see: of the switched bridge the mean over the period that has ended."""
-    if p.fidelity == SWITCHED and x.trip == NO_TRIP:
-        return x.mean.u
-    return bridge(limit_modulation(m), x.i, x.v_dc, x.trip != NO_TRIP).u
+    u = bridge(limit_modulation(m), x.i, x.v_dc, x.trip != NO_TRIP).u
+    if devices is None:
+        return u
+    return x.mean.u if x.trip == NO_TRIP else u
 
 
 @kernel
 def observe(x: PlantState, m: complex, source: Source, t: float, p: PlantParams, tables: PlantTables) -> Observed:
     """Voltages at the instant ``t`` (s) of a state and its source, as the period begins in which ``m`` acts."""
     e = source_voltage(source) + harmonic_voltage(source, t, tables.harmonics)
-    u_ab = terminal_voltage(x, x.i, inverter_voltage(x, m, p), e, p)
+    u_ab = terminal_voltage(x, x.i, inverter_voltage(x, m, p.devices), e, p)
     zero = zero_sequence(source) + harmonic_zero_sequence(source, t, tables.harmonics)
     return Observed(u_ab=u_ab, u0_ab=e, u_zero=zero)
 
@@ -189,18 +188,47 @@ def plant_step(x: PlantState, m: complex, e: complex, u_min: float, p: PlantPara
 
 
 @kernel
-def switched_plant_step(x: PlantState, pulses: Pulses, n: int, e: complex, u_min: float, p: PlantParams) -> PlantState:
+def switched_plant_step(
+    x: PlantState, pulses: Pulses, n: int, e: complex, u_min: float, p: PlantParams, devices: DeviceParams
+) -> PlantState:
     """Advance by plant step ``n`` of a carrier period; ``e`` is the source (V) at the middle of the step.
 
     Second order: the link first feels the array's current of the step before, which is then corrected by its own.
     """
-    found = switched_flow(x.i, x.v_dc, x.i_pv, e, n, pulses, p.line, p.C, p.T_S, p.devices)
+    found = switched_flow(x.i, x.v_dc, x.i_pv, e, n, pulses, p.line, p.C, p.T_S, devices)
     v_mid = 0.5 * (x.v_dc + found.v_dc)
     x_pv = diode_voltage(v_mid, p.G, x.x_pv, p.pv)
     i_pv = array_current(v_mid, x_pv, p.pv)
     v_dc = found.v_dc + p.T_S / p.C * (i_pv - x.i_pv)
     flow = Flow(i=found.i, v_dc=v_dc, x_pv=x_pv, i_pv=i_pv, u_inv=found.mean.u, i_mid=found.mean.i)
     return after_relays(x, flow, added_to_mean(x.mean, found.mean, n, p.ratio), e, u_min, p)
+
+
+@kernel
+def pulses_if_switched(m: complex, period: float, devices: DeviceParams | None) -> Pulses | None:
+    """Commands of a carrier period of this length (s); none for the averaged inverter."""
+    if devices is None:
+        return None
+    return pulses_of(m, period)
+
+
+@kernel
+def either_plant_step(
+    x: PlantState,
+    m: complex,
+    pulses: Pulses | None,
+    n: int,
+    e: complex,
+    u_min: float,
+    p: PlantParams,
+    devices: DeviceParams | None,
+) -> PlantState:
+    """Advance by plant step ``n`` of a period: switched where there are devices and the bridge is not blocked."""
+    if devices is None or pulses is None:
+        return plant_step(x, m, e, u_min, p)
+    if x.trip != NO_TRIP:
+        return plant_step(x, m, e, u_min, p)
+    return switched_plant_step(x, pulses, n, e, u_min, p, devices)
 
 
 @kernel
@@ -213,8 +241,7 @@ def advance(x: PlantState, m: complex, source: Source, t: float, p: PlantParams,
     """
     m = limit_modulation(m)
     u_min = undervoltage_limit(x.relay, p.protection, tables.undervoltage)
-    switched = p.fidelity == SWITCHED
-    pulses = pulses_of(m, p.ratio * p.T_S)
+    pulses = pulses_if_switched(m, p.ratio * p.T_S, p.devices)
     source = half_step_later(source)
     distorted = len(tables.harmonics.order) > 0
     for n in range(p.ratio):
@@ -226,8 +253,5 @@ def advance(x: PlantState, m: complex, source: Source, t: float, p: PlantParams,
         e = source_voltage(source)
         if distorted:  # tables go no further than this branch: passing them on costs more than a whole step
             e += harmonic_voltage(source, t_mid, tables.harmonics)
-        if switched and x.trip == NO_TRIP:
-            x = switched_plant_step(x, pulses, n, e, u_min, p)
-        else:
-            x = plant_step(x, m, e, u_min, p)
+        x = either_plant_step(x, m, pulses, n, e, u_min, p, p.devices)
     return x

@@ -31,16 +31,16 @@ def sensor_params(s: SensorParameters) -> SensorParams:
     )
 
 
-def hardware_of(parameters: Parameters, start: Start, periods: int) -> Hardware:
-    """Hardware of a run over so many control periods, in the steady state of its start."""
-    s, c = parameters.sensors, parameters.controller
-    sensors = sensor_params(s)
-    delay = c.computation_delay_samples
+def hardware_of(parameters: Parameters, start: Start, periods: int) -> Hardware | None:
+    """Hardware of a run over so many control periods, in the steady state of its start; none where it is ideal."""
+    s, delay = parameters.sensors, parameters.controller.computation_delay_samples
     default = ControllerParameters.model_fields["computation_delay_samples"].default
+    if s == SensorParameters() and delay == default:
+        return None
+    sensors = sensor_params(s)
     at_start = Measured(u_g_ab=start.u_g_ab, i_ab=start.plant.i, v_dc=start.plant.v_dc, i_pv=start.plant.i_pv)
     rows = periods if sensors.noise.any() else 1
     return Hardware(
-        ideal=s == SensorParameters() and delay == default,
         sensors=sensors,
         lines=filled(DelayParams(measurement=s.measurement_delay_samples, computation=delay), at_start, start.m),
         random=np.random.default_rng(s.noise_seed).standard_normal((rows, len(CHANNELS))),

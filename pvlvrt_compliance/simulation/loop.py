@@ -74,7 +74,7 @@ def run(
     plant_params: PlantParams,
     tables: PlantTables,
     controller_params: ControllerParams,
-    hardware: Hardware,
+    hardware: Hardware | None,
     samples: NDArray[np.float64],
 ) -> Outcome:
     """Simulate from control period ``first`` (negative: unrecorded settling) to the end of ``samples``.
@@ -97,19 +97,19 @@ def run(
         t = n * T_reg
         source = source_at(t, k_grid, tables.grid)
         k_grid = source.k
-        if not hardware.ideal:
+        if hardware is not None:
             m = acting(hardware.lines, n - first)
         now = as_at(t, k_grid, plant_params, tables)
         y = observe(plant, m, source, t, now, tables)
         sampled = Measured(u_g_ab=y.u_ab, i_ab=plant.i, v_dc=plant.v_dc, i_pv=plant.i_pv)
-        if not hardware.ideal:
+        if hardware is not None:
             sampled = read(sampled, y.u_zero, n, first, hardware)
         controller, signals = controller_step(controller, sampled, controller_params)
         if not is_finite(plant, signals):
             return Outcome(status=NOT_FINITE, samples=max(n, 0), plant=plant)
         if n >= 0:
             record(samples[n], plant, y, signals, now.G)
-        if not hardware.ideal:
+        if hardware is not None:
             put(hardware.lines, n - first, signals.m)
             m = acting(hardware.lines, n - first)
         plant = advance(plant, m, source, t, now, tables)

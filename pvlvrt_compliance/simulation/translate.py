@@ -20,7 +20,7 @@ from pvlvrt_compliance.control.synchronisation import SynchronisationParams
 from pvlvrt_compliance.kernel import plain
 from pvlvrt_compliance.plant import pv_array
 from pvlvrt_compliance.plant.grid import GridTable
-from pvlvrt_compliance.plant.inverter import FIDELITIES, K_PWM, M_MAX
+from pvlvrt_compliance.plant.inverter import K_PWM, M_MAX
 from pvlvrt_compliance.plant.plant import PlantParams, PlantState, PlantTables
 from pvlvrt_compliance.plant.protection import NO_TRIP, ProtectionParams, UndervoltageCurve, relays_at_rest
 from pvlvrt_compliance.plant.pv_array import STC_IRRADIANCE, PvParams
@@ -130,13 +130,12 @@ def plant_params(parameters: Parameters, scenario: Scenario) -> PlantParams:
         pv=pv_params(parameters, scenario),
         line=line_of(parameters, nominal, scenario.scr, scenario.xr, T_S),
         protection=protection_params(parameters, nominal),
-        devices=device_params(parameters),
+        devices=device_params(parameters) if parameters.simulation.fidelity == "switched" else None,
         C=p.dc_link_capacitance_f,
         G=scenario.irradiance_w_m2 / STC_IRRADIANCE,
         t_breaker=p.breaker_opening_s,
         T_S=T_S,
         ratio=parameters.simulation.control_ratio,
-        fidelity=FIDELITIES.index(parameters.simulation.fidelity),
     )
 
 
