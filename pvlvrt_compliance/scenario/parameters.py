@@ -13,6 +13,7 @@ Positive = Annotated[FiniteFloat, Field(gt=0)]
 NotNegative = Annotated[FiniteFloat, Field(ge=0)]
 PhaseValues = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 
+Precision = Literal["double", "single"]
 Fidelity = Literal["averaged", "switched"]
 PowerStrategy = Literal["constant-p-q", "constant-p-light-q", "constant-p-sinusoidal", "constant-q", "balanced"]
 Synchronisation = Literal["msogi-fll", "dsogi-fll", "srf-pll", "ddsrf-pll", "dsc-pll"]
@@ -120,6 +121,7 @@ class ControllerParameters(_Group):
     mppt_step_v: NotNegative = Field(default=0.5, description="size of a perturbation; not in the paper")
     mppt_voltage_min_v: NotNegative = Field(default=600.0, description="lower limit of v*_DC; not in the paper")
     mppt_voltage_max_v: Positive = Field(default=1000.0, description="upper limit of v*_DC; not in the paper")
+    precision: Precision = Field(default="double", description="of the numbers that the controller keeps")
     computation_delay_samples: int = Field(
         default=1, ge=0, le=20, description="from a sample to the period in which its modulating signal acts"
     )

@@ -14,7 +14,7 @@ from pvlvrt_compliance.control.controller import (
     controller_step,
 )
 from pvlvrt_compliance.control.delays import acting, put
-from pvlvrt_compliance.control.hardware import Hardware, read
+from pvlvrt_compliance.control.hardware import Hardware, controller_on, read
 from pvlvrt_compliance.kernel import cached_kernel, kernel
 from pvlvrt_compliance.plant.grid import source_at
 from pvlvrt_compliance.plant.plant import Observed, PlantParams, PlantState, PlantTables, advance, as_at, observe
@@ -65,6 +65,16 @@ def is_finite(x: PlantState, s: ControllerSignals) -> bool:
     return math.isfinite(x.v_dc + x.i.real + x.i.imag + x.i_pv + s.m.real + s.m.imag + s.w + s.P_ref + s.v_ref)
 
 
+@kernel
+def controller_with(
+    x: ControllerState, y: Measured, p: ControllerParams, hardware: Hardware | None
+) -> tuple[ControllerState, ControllerSignals]:
+    """Advance the controller by one sample, on hardware or ideally."""
+    if hardware is None:
+        return controller_step(x, y, p)
+    return controller_on(x, y, p, hardware)
+
+
 @cached_kernel
 def run(
     plant: PlantState,
@@ -104,7 +114,7 @@ def run(
         sampled = Measured(u_g_ab=y.u_ab, i_ab=plant.i, v_dc=plant.v_dc, i_pv=plant.i_pv)
         if hardware is not None:
             sampled = read(sampled, y.u_zero, n, first, hardware)
-        controller, signals = controller_step(controller, sampled, controller_params)
+        controller, signals = controller_with(controller, sampled, controller_params, hardware)
         if not is_finite(plant, signals):
             return Outcome(status=NOT_FINITE, samples=max(n, 0), plant=plant)
         if n >= 0:

@@ -18,7 +18,7 @@ NOMINAL_A = 1024.8
 REALISTIC = (
     *("sensors.adc_bits=12", "sensors.voltage_gain=[1.004,0.997,1.0]", "sensors.current_gain=[0.996,1.003,1.0]"),
     *("sensors.current_offset_a=[3,-2,0]", "sensors.current_noise_a=2", "sensors.voltage_noise_v=0.5"),
-    "sensors.dc_voltage_noise_v=0.5",
+    *("sensors.dc_voltage_noise_v=0.5", "controller.precision=single"),
 )
 
 
@@ -111,6 +111,15 @@ def test_computation_delay_costs_the_margin():
     assert np.abs(run(f"controller.computation_delay_samples={calm}")["i_a_a"]).max() < 1.01 * NOMINAL_A
     segment = run(f"controller.computation_delay_samples={swinging}")
     assert segment["connected"].min() == 0 or np.abs(segment["i_a_a"]).max() > 1.3 * NOMINAL_A
+
+
+def test_single_precision():
+    """Numbers of 32 bits move the current by less than a thousandth of nominal, and by something."""
+    double, single = run(depth=0.9), run("controller.precision=single", depth=0.9)
+    apart = np.abs(double["i_a_a"] - single["i_a_a"]).max()
+    assert 1e-6 * NOMINAL_A < apart < 1e-3 * NOMINAL_A
+    assert np.array_equal(single["p_ref_w"], single["p_ref_w"].astype(np.float32).astype(np.float64))
+    assert not np.array_equal(double["p_ref_w"], double["p_ref_w"].astype(np.float32).astype(np.float64))
 
 
 def test_realistic_hardware_passes():
