@@ -37,6 +37,15 @@ class HarmonicTable(NamedTuple):
     t_off: NDArray[np.float64]  # (s)
 
 
+class PlaybackTable(NamedTuple):
+    """Recorded voltage that takes the source's place while it lasts; without samples there is none."""
+
+    t: float  # instant of the first sample (s)
+    dt: float  # (s)
+    u: NDArray[np.complex128]  # space vectors (V)
+    u_zero: NDArray[np.float64]  # zero sequence, phase to neutral (V)
+
+
 class Source(NamedTuple):
     """The entry that holds, and the angle as a unit vector. No arrays: it is passed in every plant step."""
 
@@ -116,6 +125,31 @@ def power_of(turn: complex, order: int) -> complex:
         base = base * base
         n >>= 1
     return result
+
+
+@kernel
+def is_playing(t: float, table: PlaybackTable) -> bool:
+    """Whether a recording holds at an instant (s)."""
+    return table.t <= t < table.t + (len(table.u) - 1) * table.dt
+
+
+@kernel
+def playback_voltage(t: float, table: PlaybackTable) -> complex:
+    """Space vector of the recording at an instant (V): straight lines between its samples."""
+    place = (t - table.t) / table.dt
+    k = min(int(place), len(table.u) - 2)
+    before: complex = table.u[k]
+    return before + scaled(place - k, table.u[k + 1] - before)
+
+
+@kernel
+def playback_zero_sequence(t: float, table: PlaybackTable) -> float:
+    """Zero sequence of the recording at an instant (V)."""
+    place = (t - table.t) / table.dt
+    k = min(int(place), len(table.u_zero) - 2)
+    before: float = table.u_zero[k]
+    after: float = table.u_zero[k + 1]
+    return before + (place - k) * (after - before)
 
 
 @kernel

@@ -7,10 +7,14 @@ from pvlvrt_compliance.plant.carrier import Pulses, pulses_of
 from pvlvrt_compliance.plant.grid import (
     GridTable,
     HarmonicTable,
+    PlaybackTable,
     Source,
     half_step_later,
     harmonic_voltage,
     harmonic_zero_sequence,
+    is_playing,
+    playback_voltage,
+    playback_zero_sequence,
     source_at,
     source_voltage,
     step_later,
@@ -51,6 +55,7 @@ class PlantTables(NamedTuple):
 
     grid: GridTable
     harmonics: HarmonicTable
+    playback: PlaybackTable
     lines: LineTable
     irradiance: IrradianceTable
     undervoltage: UndervoltageCurve
@@ -138,8 +143,10 @@ def inverter_voltage(x: PlantState, m: complex, devices: DeviceParams | None) ->
 def observe(x: PlantState, m: complex, source: Source, t: float, p: PlantParams, tables: PlantTables) -> Observed:
     """Voltages at the instant ``t`` (s) of a state and its source, as the period begins in which ``m`` acts."""
     e = source_voltage(source) + harmonic_voltage(source, t, tables.harmonics)
-    u_ab = terminal_voltage(x, x.i, inverter_voltage(x, m, p.devices), e, p)
     zero = zero_sequence(source) + harmonic_zero_sequence(source, t, tables.harmonics)
+    if is_playing(t, tables.playback):
+        e, zero = playback_voltage(t, tables.playback), playback_zero_sequence(t, tables.playback)
+    u_ab = terminal_voltage(x, x.i, inverter_voltage(x, m, p.devices), e, p)
     return Observed(u_ab=u_ab, u0_ab=e, u_zero=zero)
 
 
@@ -244,6 +251,7 @@ def advance(x: PlantState, m: complex, source: Source, t: float, p: PlantParams,
     pulses = pulses_if_switched(m, p.ratio * p.T_S, p.devices)
     source = half_step_later(source)
     distorted = len(tables.harmonics.order) > 0
+    recorded = len(tables.playback.u) > 0
     for n in range(p.ratio):
         t_mid = t + (n + 0.5) * p.T_S
         if n > 0:
@@ -253,5 +261,7 @@ def advance(x: PlantState, m: complex, source: Source, t: float, p: PlantParams,
         e = source_voltage(source)
         if distorted:  # tables go no further than this branch: passing them on costs more than a whole step
             e += harmonic_voltage(source, t_mid, tables.harmonics)
+        if recorded and is_playing(t_mid, tables.playback):
+            e = playback_voltage(t_mid, tables.playback)
         x = either_plant_step(x, m, pulses, n, e, u_min, p, p.devices)
     return x

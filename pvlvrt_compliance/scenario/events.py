@@ -102,7 +102,28 @@ class Irradiance(_Event):
     ramp_s: Annotated[FiniteFloat, Field(ge=0, le=3600)] = 0.0
 
 
+class Recording(_Event):
+    """A recorded voltage that takes the source's place from an instant on, for as long as it lasts.
+
+    A CSV file with a column ``t_s``, or a COMTRADE file (``.cfg``, extra ``comtrade``).
+    """
+
+    kind: Literal["recording"] = "recording"
+    file: str = Field(min_length=1)
+    t_s: Time
+    channels: tuple[str, str, str] = ("u_a_v", "u_b_v", "u_c_v")
+    scale: Annotated[FiniteFloat, Field(ge=-1e6, le=1e6)] = Field(default=1.0, description="to phase to neutral (V)")
+
+
 Event = Annotated[
-    FurtherSag | VoltageProfile | PhaseJump | FrequencyStep | FrequencyRamp | GridStrength | Harmonic | Irradiance,
+    FurtherSag
+    | VoltageProfile
+    | PhaseJump
+    | FrequencyStep
+    | FrequencyRamp
+    | GridStrength
+    | Harmonic
+    | Irradiance
+    | Recording,
     Field(discriminator="kind"),
 ]

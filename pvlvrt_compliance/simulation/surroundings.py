@@ -6,20 +6,24 @@ Belongs to `translate.py`, the one place where words with units become symbols.
 import cmath
 import math
 from collections.abc import Iterable
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.plant import line
-from pvlvrt_compliance.plant.grid import GridTable, HarmonicTable
+from pvlvrt_compliance.plant.grid import GridTable, HarmonicTable, PlaybackTable
 from pvlvrt_compliance.plant.line import LineParams, LineTable
 from pvlvrt_compliance.plant.pv_array import STC_IRRADIANCE
 from pvlvrt_compliance.plant.weather import IrradianceTable
-from pvlvrt_compliance.scenario.events import Harmonic
+from pvlvrt_compliance.scenario.events import Harmonic, Recording
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import LONG_AGO_S, entries, irradiance_points
+from pvlvrt_compliance.space_vectors import clarke
 from pvlvrt_compliance.units import Nominal
+from pvlvrt_compliance.waveforms.recording import read_recording
 
 _SQRT3_2 = math.sqrt(1.5)  # length of a power-invariant space vector per unit of phase amplitude
 
@@ -67,6 +71,26 @@ def harmonic_table(scenario: Scenario, nominal: Nominal) -> HarmonicTable:
         t_on=np.array(starts, dtype=np.float64),
         t_off=np.array(starts, dtype=np.float64) + np.array(lengths, dtype=np.float64),
     )
+
+
+def playback_table(scenario: Scenario) -> PlaybackTable:
+    """Recording of a scenario.
+
+    Raises
+    ------
+    UsageError
+        When it cannot be read, or there are several.
+    """
+    found = [event for event in scenario.events if isinstance(event, Recording)]
+    if not found:
+        return PlaybackTable(t=0.0, dt=1.0, u=_vector([]), u_zero=np.empty(0))
+    if len(found) > 1:
+        raise UsageError("events: one recording at most")
+    event = found[0]
+    samples = read_recording(Path(event.file), event.channels)
+    a, b, c = (event.scale * samples[name] for name in event.channels)
+    t = scenario.start_s + event.t_s
+    return PlaybackTable(t=t, dt=samples.dt_s, u=np.ascontiguousarray(clarke(a, b, c)), u_zero=(a + b + c) / 3)
 
 
 def line_of(parameters: Parameters, nominal: Nominal, scr: float | None, xr: float, T_S: float) -> LineParams:

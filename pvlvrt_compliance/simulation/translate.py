@@ -33,6 +33,7 @@ from pvlvrt_compliance.simulation.surroundings import (
     irradiance_table,
     line_of,
     line_table,
+    playback_table,
 )
 from pvlvrt_compliance.sogi import in_steady_state
 from pvlvrt_compliance.units import Nominal
@@ -147,6 +148,7 @@ def plant_tables(parameters: Parameters, scenario: Scenario) -> PlantTables:
     return PlantTables(
         grid=grid_table(scenario, nominal, T_S),
         harmonics=harmonic_table(scenario, nominal),
+        playback=playback_table(scenario),
         lines=line_table(scenario, parameters, nominal, T_S),
         irradiance=irradiance_table(scenario),
         undervoltage=UndervoltageCurve(t=curve[:, 0].copy(), u=curve[:, 1].copy()),

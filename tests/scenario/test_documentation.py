@@ -14,4 +14,4 @@ def test_the_example_of_events_is_valid(tmp_path):
     file = tmp_path / "events.toml"
     file.write_text(example, "utf-8")
     kinds = {event.kind for event in load_events(str(file))}
-    assert len(kinds) == 8
+    assert len(kinds) == 9
