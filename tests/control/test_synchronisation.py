@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from pvlvrt_compliance.control.synchronisation import SynchronisationState, locked
+from pvlvrt_compliance.control.synchronisation import SynchronisationState
 
 U = math.sqrt(3) * 230
 T_REG = 40.9568e-6
@@ -133,9 +133,8 @@ def test_decoupled_frames_at_the_right_angle_are_a_generator(track):
 
 
 @every
-def test_only_the_chosen_one_moves(params, chosen, algorithm):
-    """The states of the others stay as they were."""
+def test_only_the_chosen_one_is_there(chosen, algorithm):
+    """A run has the state of its own synchronisation and of no other."""
     after = chosen(algorithm, vector(51, 0.02, {1: 0.5 * U}), 50).state
-    before = locked(complex(params.lvrt.u_nom), 2 * math.pi * 50, params.sync, params.T)
-    moved = {name for name in SynchronisationState._fields if str(getattr(after, name)) != str(getattr(before, name))}
-    assert moved == {algorithm.partition("-")[0]}
+    there = {name for name in SynchronisationState._fields if getattr(after, name) is not None}
+    assert there == {algorithm.partition("-")[0]}
