@@ -1,22 +1,25 @@
 """The switched plant as an ngspice circuit, its gates driven at instants computed from a recorded modulating signal."""
 
+import math
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from circuit import Compared, Drive, aligned, phase_values, rows, scenario_of, solved
-from evidence import Section
+from evidence import Plot, Row, Section, at_most
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.waveforms import Segment
-from records import record, without_trips
+from records import NOMINAL, record, rms, without_trips
+from ripple import FINE, Ripple, ripple
 
 SAG = Sag(depth=0.9, phases="c")
 BEFORE_S, AFTER_S = 0.004, 0.004
 SAG_STEPS = 3906
 """20 ms, and both ends within control periods."""
+RIPPLE_LIMIT_PERCENT = 0.05
 _EDGE_S = 1e-9
 
 _IDEAL = {"dead_time_us": 0, "device_drop_v": 0, "device_resistance_ohm": 0, "switching_energy_mj": 0}
@@ -74,24 +77,60 @@ def gate_sources(samples: Segment) -> Iterator[str]:
 SWITCHED = Drive("1", gate_sources)
 
 
-def compare(parameters: Parameters | None = None) -> Compared:
+class Run(NamedTuple):
+    """One run in both programs."""
+
+    compared: Compared  # at the controller's samples
+    ripple: Ripple  # between them, before the sag
+
+
+def run(parameters: Parameters | None = None) -> Run:
     """Run both programs through a sag of one cycle, from 4 ms before it to 4 ms after it.
 
     Other parameters for the simulator than ideal devices, which the circuit has, make a difference that should show.
     """
-    scenario = scenario_of(SAG, SAG_STEPS)
-    samples = record(scenario, parameters or ideal_devices())
+    scenario, ideal = scenario_of(SAG, SAG_STEPS), ideal_devices()
+    samples = record(scenario, parameters or ideal)
     samples = samples.slice(scenario.start_s - BEFORE_S, scenario.clear_s + AFTER_S)
-    return aligned(scenario, samples, solved(scenario, ideal_devices(), samples, SWITCHED))
+    theirs = solved(scenario, ideal, samples, SWITCHED)
+    return Run(aligned(scenario, samples, theirs), ripple(scenario, parameters or ideal, samples, theirs))
+
+
+def ripple_rows(x: Ripple) -> tuple[Row, ...]:
+    """Size of the ripple in both programs, and their difference."""
+    ours, theirs = (float(np.abs(y).max()) for y in (x.ours, x.theirs))
+    percent = 100 * rms(x.ours - x.theirs) / (NOMINAL.phase_current_peak_a / math.sqrt(2))
+    return (
+        Row("ripple of the currents at nominal, largest", ours, theirs, 0.01 * theirs, "A"),
+        at_most("difference of the ripple at nominal, rms", percent, RIPPLE_LIMIT_PERCENT, "% of nominal", 0.01),
+    )
+
+
+def drawing(x: Ripple) -> Plot:
+    """Ripple of both programs."""
+
+    def draw(figure: Any) -> None:
+        axes, shown = figure.subplots(), slice(0, 12 * FINE)
+        for k, phase in enumerate("abc"):
+            axes.plot(1e6 * x.t[shown], x.ours[k, shown], linewidth=1, label=f"i_{phase}")
+            axes.plot(1e6 * x.t[shown][::4], x.theirs[k, shown][::4], "k.", markersize=2)
+        axes.set(xlabel="time (us)", ylabel="ripple (A)")
+        axes.legend(fontsize="x-small", loc="upper right")
+
+    return Plot("ngspice-switched", "Ripple at nominal: lines are the simulator's, points are ngspice's.", draw)
 
 
 def section() -> Section:
     """Section on ngspice's switched circuit."""
-    return Section("Switched plant against ngspice", _TEXT, rows({"phase c 90 %, switched": compare()}))
+    found = run()
+    figures = (*rows({"phase c 90 %, switched": found.compared}), *ripple_rows(found.ripple))
+    return Section("Switched plant against ngspice", _TEXT, figures, (drawing(found.ripple),))
 
 
 _TEXT = """The same circuit with three legs that switch: each at v_DC or at 0 as its gate is 1 or 0, i_DC the sum of the
 currents of the legs that are up, the star point of the grid floating against the link. The gates change (in 1 ns) at
 instants computed outside the simulator, from the recorded modulating signals and a triangle of 24.416 kHz; nothing is
 rounded to a time step. Without dead time, drops and switching energy, which the circuit does not have. From 4 ms
-before a sag of 20 ms to 4 ms after it, compared where the controller samples."""
+before a sag of 20 ms to 4 ms after it, compared where the controller samples. There an averaged inverter would agree as
+well; so the ripple between samples is compared too, as the current less the straight line between them, in every
+period before the sag, each computed from its own sample on."""
