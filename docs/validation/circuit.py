@@ -4,7 +4,7 @@ import math
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -58,13 +58,13 @@ def installed() -> bool:
     return shutil.which("ngspice") is not None
 
 
-def scenario_of(sag: Sag) -> Scenario:
-    """Sag of about 30 ms at full sun on a stiff grid, that begins and ends on plant steps within control periods.
+def scenario_of(sag: Sag, steps: int = 5866) -> Scenario:
+    """Sag at full sun on a stiff grid that begins and ends on plant steps, of 30 ms also within control periods.
 
     Between steps the simulator would move an event by up to half of one, which the open loop never forgets.
     """
     step = plant_step_s(Parameters())
-    return Scenario(sag=sag, before_s=50003 * step, duration_s=5866 * step, after_s=0.1, point_on_wave_deg=30.0)
+    return Scenario(sag=sag, before_s=50003 * step, duration_s=steps * step, after_s=0.1, point_on_wave_deg=30.0)
 
 
 def pwl(name: str, node: str, t: NDArray[np.float64], x: NDArray[np.float64]) -> Iterator[str]:
@@ -93,14 +93,34 @@ def array_elements(pv: PvParams, G: float) -> Iterator[str]:
     yield f"Rseries x dc {pv.R_s * n_s / n_p:.15g}"
 
 
-def inverter_elements(L: float, R: float, start: dict[str, float]) -> Iterator[str]:
-    """Averaged bridge and filter: u_x = 2/3 v_DC m_x against a floating star point, i_DC = 2/3 sum of m_x i_x."""
+class Drive(NamedTuple):
+    """What drives the three legs, in each u_x = gain v_DC m_x against a floating point; i_DC = gain sum of m_x i_x."""
+
+    gain: str
+    sources: Callable[[Segment], Iterator[str]]  # voltage sources (V) at the nodes ma, mb and mc, from samples
+
+
+def averaged_sources(samples: Segment) -> Iterator[str]:
+    """Modulating signals, held per control period.
+
+    What the controller computes at a sample acts in the period after the next, so the signals begin one sample late.
+    """
+    t = samples.t_s[1:] - samples.t_s[1]
+    for x, m in zip("abc", phase_values(samples, "m"), strict=True):
+        yield from pwl(f"m{x}", f"m{x}", t, m[:-1])
+
+
+AVERAGED = Drive("2/3", averaged_sources)
+
+
+def inverter_elements(L: float, R: float, start: dict[str, float], gain: str) -> Iterator[str]:
+    """Bridge and filter in three phases."""
     for x in "abc":
-        yield f"Bu{x} u{x} star V = 2/3*V(dc)*V(m{x})"
+        yield f"Bu{x} u{x} star V = {gain}*V(dc)*V(m{x})"
         yield f"Vi{x} u{x} l{x} DC 0"
         yield f"L{x} l{x} r{x} {L:.12g} IC={start[x]:.12g}"
         yield f"R{x} r{x} e{x} {R:.12g}"
-    yield "Bdc dc 0 I = 2/3*(V(ma)*I(Via)+V(mb)*I(Vib)+V(mc)*I(Vic))"
+    yield f"Bdc dc 0 I = {gain}*(V(ma)*I(Via)+V(mb)*I(Vib)+V(mc)*I(Vic))"
     yield "Rstar star 0 1e9"
 
 
@@ -119,21 +139,16 @@ def grid_elements(scenario: Scenario, t0: float, end: float) -> Iterator[str]:
     yield f".tran {_STEP_S:g} {end:.12g} 0 {_STEP_S:g} UIC"
 
 
-def netlist(scenario: Scenario, parameters: Parameters, samples: Segment, output: Path) -> str:
-    """Circuit from the first of ``samples`` on, with what the plant was there as initial conditions.
-
-    What the controller computes at a sample acts in the period after the next, so the signals begin one sample late.
-    """
+def netlist(scenario: Scenario, parameters: Parameters, samples: Segment, output: Path, drive: Drive) -> str:
+    """Circuit from the second of ``samples`` on, with what the plant was there as initial conditions."""
     plant = parameters.plant
-    t = samples.t_s[1:] - samples.t_s[0]
     start = {x: float(samples[f"i_{x}_a"][1]) for x in "abc"}
-    lines = ["* averaged plant"]
+    lines = ["* plant"]
     lines += array_elements(pv_params(parameters, scenario), scenario.irradiance_w_m2 / 1000)
     lines.append(f"Clink dc 0 {plant.dc_link_capacitance_f:.12g} IC={samples['v_dc_v'][1]:.12g}")
-    lines += inverter_elements(plant.filter_inductance_h, plant.filter_resistance_ohm, start)
-    for x, m in zip("abc", phase_values(samples, "m"), strict=True):
-        lines += pwl(f"m{x}", f"m{x}", t - t[0], m[:-1])
-    lines += grid_elements(scenario, float(samples.t_s[1]), float(t[-1] - t[0]))
+    lines += inverter_elements(plant.filter_inductance_h, plant.filter_resistance_ohm, start, drive.gain)
+    lines += drive.sources(samples)
+    lines += grid_elements(scenario, float(samples.t_s[1]), float(samples.t_s[-1] - samples.t_s[1]))
     lines += [
         ".options reltol=1e-6 abstol=1e-9 vntol=1e-9 chgtol=1e-16 temp=25 method=gear",
         ".control",
@@ -148,7 +163,9 @@ def netlist(scenario: Scenario, parameters: Parameters, samples: Segment, output
     return "\n".join(lines) + "\n"
 
 
-def solved(scenario: Scenario, parameters: Parameters, samples: Segment) -> NDArray[np.float64]:
+def solved(
+    scenario: Scenario, parameters: Parameters, samples: Segment, drive: Drive = AVERAGED
+) -> NDArray[np.float64]:
     """Time (s), phase currents (A) and DC voltage (V) of ngspice, shape (5, n).
 
     Raises
@@ -158,7 +175,7 @@ def solved(scenario: Scenario, parameters: Parameters, samples: Segment) -> NDAr
     """
     with tempfile.TemporaryDirectory() as folder:
         circuit, output = Path(folder) / "plant.cir", Path(folder) / "plant.data"
-        circuit.write_text(netlist(scenario, parameters, samples, output), encoding="utf-8")
+        circuit.write_text(netlist(scenario, parameters, samples, output, drive), encoding="utf-8")
         run = subprocess.run(["ngspice", "-b", str(circuit)], capture_output=True, text=True, check=False)
         if not output.exists():
             raise RuntimeError(f"ngspice gave no result: {(run.stdout + run.stderr)[-500:]}")
@@ -173,6 +190,11 @@ def compare(sag: Sag, circuit_parameters: Parameters | None = None) -> Compared:
     parameters, scenario = without_trips(), scenario_of(sag)
     samples = record(scenario, parameters).slice(scenario.start_s - BEFORE_S, scenario.clear_s + AFTER_S)
     theirs = solved(scenario, circuit_parameters or parameters, samples)
+    return aligned(scenario, samples, theirs)
+
+
+def aligned(scenario: Scenario, samples: Segment, theirs: NDArray[np.float64]) -> Compared:
+    """Record and ngspice's solution at the controller's samples."""
     t = samples.t_s[1:] - samples.t_s[1]
     ours = np.array([samples[name][1:] for name in ("i_a_a", "i_b_a", "i_c_a", "v_dc_v")])
     return Compared(t=t - (scenario.start_s - samples.t_s[1]), ours=ours, theirs=_at(t, theirs))

@@ -15,6 +15,7 @@ import findings
 import integrator
 import invariants
 import photovoltaics
+import switched_circuit
 from evidence import Plot, Section
 from page import FIGURES, differences, page
 
@@ -27,6 +28,7 @@ def sections() -> tuple[Section, ...]:
     return (
         *blocks.sections(),
         circuit.section(),
+        switched_circuit.section(),
         integrator.section(),
         photovoltaics.section(),
         invariants.section(),
