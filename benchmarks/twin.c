@@ -50,7 +50,7 @@ Outcome run(const PlantState *plant_start, const ControllerState *controller_sta
         Source source = source_at(t, k_grid, &tables->grid);
         k_grid = source.k;
         as_at(p, t, k_grid, tables);
-        Observed y = observe(&plant, m, &source, t, p, tables);
+        Observed y = observe(&plant, m, &source, p);
         Measured sampled = {.u_g_ab = y.u_ab, .i_ab = plant.i, .v_dc = plant.v_dc, .i_pv = plant.i_pv};
         ControllerSignals signals = controller_step(&controller, sampled, controller_params);
         if (!finite_numbers(&plant, &signals))

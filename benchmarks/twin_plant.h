@@ -35,35 +35,6 @@ static inline void later(Source *x, vector by, double halves)
     x->turn *= by;
 }
 
-static inline vector power_of(vector turn, int64_t order)
-{
-    vector base = order >= 0 ? turn : conj(turn), result = 1.0;
-    for (int64_t n = order >= 0 ? order : -order; n > 0; n >>= 1) {
-        if (n & 1)
-            result *= base;
-        base *= base;
-    }
-    return result;
-}
-
-static inline vector harmonic_voltage(const Source *x, double t, const HarmonicTable *table)
-{
-    vector u = 0.0;
-    for (int64_t k = 0; k < table->size; k++)
-        if (table->t_on[k] <= t && t < table->t_off[k])
-            u += table->u[k] * power_of(x->turn, table->order[k]);
-    return u;
-}
-
-static inline double harmonic_zero_sequence(const Source *x, double t, const HarmonicTable *table)
-{
-    double u = 0.0;
-    for (int64_t k = 0; k < table->size; k++)
-        if (table->t_on[k] <= t && t < table->t_off[k])
-            u += creal(table->u_zero[k] * power_of(x->turn, table->order[k]));
-    return u;
-}
-
 static inline double irradiance_at(double t, const IrradianceTable *table)
 {
     double G = table->G[table->size - 1];
@@ -83,11 +54,6 @@ static inline void as_at(PlantParams *p, double t, int64_t k, const PlantTables 
 }
 
 static inline vector source_voltage(const Source *x) { return x->u_pos * x->turn + x->u_neg * conj(x->turn); }
-
-static inline vector grid_voltage(const Source *x, double t, const PlantTables *tables)
-{
-    return source_voltage(x) + harmonic_voltage(x, t, &tables->harmonics);
-}
 
 static inline Bridge modulated(vector m, vector i, double v_dc)
 {
@@ -113,15 +79,14 @@ static inline vector terminal_voltage(const PlantState *x, vector i, vector u_in
     return conducting ? p->k_u * u_inv + p->k_e * e + p->k_i * i : e;
 }
 
-static inline Observed observe(const PlantState *x, vector m, const Source *source, double t, const PlantParams *p,
-                               const PlantTables *tables)
+static inline Observed observe(const PlantState *x, vector m, const Source *source, const PlantParams *p)
 {
-    vector e = grid_voltage(source, t, tables);
+    vector e = source_voltage(source);
     vector u_inv = bridge(limited_to(M_MAX, m), x->i, x->v_dc, x->trip != NO_TRIP).u;
     return (Observed){
         .u_ab = terminal_voltage(x, x->i, u_inv, e, &p->line),
         .u0_ab = e,
-        .u_zero = creal(source->u_zero * source->turn) + harmonic_zero_sequence(source, t, &tables->harmonics),
+        .u_zero = creal(source->u_zero * source->turn),
     };
 }
 
@@ -217,6 +182,6 @@ static inline void advance(PlantState *x, vector m, Source source, double t, con
             source = source_at(t_mid, source.k, &tables->grid);
             rate = source.half_rate * source.half_rate;
         }
-        plant_step(x, m, grid_voltage(&source, t_mid, tables), u_min, p);
+        plant_step(x, m, source_voltage(&source), u_min, p);
     }
 }

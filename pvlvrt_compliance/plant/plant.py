@@ -54,8 +54,8 @@ class PlantTables(NamedTuple):
     """What is looked up in arrays, once a control period."""
 
     grid: GridTable
-    harmonics: HarmonicTable
-    playback: PlaybackTable
+    harmonics: HarmonicTable | None
+    playback: PlaybackTable | None
     lines: LineTable
     irradiance: IrradianceTable
     undervoltage: UndervoltageCurve
@@ -140,12 +140,44 @@ def inverter_voltage(x: PlantState, m: complex, devices: DeviceParams | None) ->
 
 
 @kernel
+def with_harmonics(e: complex, source: Source, t: float, table: HarmonicTable | None) -> complex:
+    """Source voltage (V) with its harmonics, if any."""
+    if table is None:
+        return e
+    return e + harmonic_voltage(source, t, table)
+
+
+@kernel
+def or_playback(e: complex, t: float, table: PlaybackTable | None) -> complex:
+    """Source voltage (V), or the recording's while there is one."""
+    if table is None:
+        return e
+    return playback_voltage(t, table) if is_playing(t, table) else e
+
+
+@kernel
+def zero_with_harmonics(u: float, source: Source, t: float, table: HarmonicTable | None) -> float:
+    """Zero sequence (V) with that of the harmonics, if any."""
+    if table is None:
+        return u
+    return u + harmonic_zero_sequence(source, t, table)
+
+
+@kernel
+def zero_or_playback(u: float, t: float, table: PlaybackTable | None) -> float:
+    """Zero sequence (V), or the recording's while there is one."""
+    if table is None:
+        return u
+    return playback_zero_sequence(t, table) if is_playing(t, table) else u
+
+
+@kernel
 def observe(x: PlantState, m: complex, source: Source, t: float, p: PlantParams, tables: PlantTables) -> Observed:
     """Voltages at the instant ``t`` (s) of a state and its source, as the period begins in which ``m`` acts."""
-    e = source_voltage(source) + harmonic_voltage(source, t, tables.harmonics)
-    zero = zero_sequence(source) + harmonic_zero_sequence(source, t, tables.harmonics)
-    if is_playing(t, tables.playback):
-        e, zero = playback_voltage(t, tables.playback), playback_zero_sequence(t, tables.playback)
+    e = with_harmonics(source_voltage(source), source, t, tables.harmonics)
+    e = or_playback(e, t, tables.playback)
+    zero = zero_with_harmonics(zero_sequence(source), source, t, tables.harmonics)
+    zero = zero_or_playback(zero, t, tables.playback)
     u_ab = terminal_voltage(x, x.i, inverter_voltage(x, m, p.devices), e, p)
     return Observed(u_ab=u_ab, u0_ab=e, u_zero=zero)
 
@@ -250,18 +282,14 @@ def advance(x: PlantState, m: complex, source: Source, t: float, p: PlantParams,
     u_min = undervoltage_limit(x.relay, p.protection, tables.undervoltage)
     pulses = pulses_if_switched(m, p.ratio * p.T_S, p.devices)
     source = half_step_later(source)
-    distorted = len(tables.harmonics.order) > 0
-    recorded = len(tables.playback.u) > 0
     for n in range(p.ratio):
         t_mid = t + (n + 0.5) * p.T_S
         if n > 0:
             source = step_later(source)
         if t_mid >= source.t_end:
             source = source_at(t_mid, source.k, tables.grid)
-        e = source_voltage(source)
-        if distorted:  # tables go no further than this branch: passing them on costs more than a whole step
-            e += harmonic_voltage(source, t_mid, tables.harmonics)
-        if recorded and is_playing(t_mid, tables.playback):
-            e = playback_voltage(t_mid, tables.playback)
+        # Tables, if any, go no further than this: passing them on costs more than a whole step.
+        e = with_harmonics(source_voltage(source), source, t_mid, tables.harmonics)
+        e = or_playback(e, t_mid, tables.playback)
         x = either_plant_step(x, m, pulses, n, e, u_min, p, p.devices)
     return x

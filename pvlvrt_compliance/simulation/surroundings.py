@@ -54,9 +54,11 @@ def grid_table(scenario: Scenario, nominal: Nominal, T_S: float) -> GridTable:
     )
 
 
-def harmonic_table(scenario: Scenario, nominal: Nominal) -> HarmonicTable:
-    """Harmonics of a scenario. In phase a one is A cos(n theta + phi), whatever its sequence."""
+def harmonic_table(scenario: Scenario, nominal: Nominal) -> HarmonicTable | None:
+    """Harmonics of a scenario, if any. In phase a one is A cos(n theta + phi), whatever its sequence."""
     found = [event for event in scenario.events if isinstance(event, Harmonic)]
+    if not found:
+        return None
     peak = nominal.phase_voltage_peak_v
     phasors = [cmath.rect(peak * event.amplitude_pu, math.radians(event.phase_deg)) for event in found]
     signs = [{"positive": 1, "negative": -1, "zero": 0}[event.natural_sequence] for event in found]
@@ -73,8 +75,8 @@ def harmonic_table(scenario: Scenario, nominal: Nominal) -> HarmonicTable:
     )
 
 
-def playback_table(scenario: Scenario) -> PlaybackTable:
-    """Recording of a scenario.
+def playback_table(scenario: Scenario) -> PlaybackTable | None:
+    """Recording of a scenario, if any.
 
     Raises
     ------
@@ -83,7 +85,7 @@ def playback_table(scenario: Scenario) -> PlaybackTable:
     """
     found = [event for event in scenario.events if isinstance(event, Recording)]
     if not found:
-        return PlaybackTable(t=0.0, dt=1.0, u=_vector([]), u_zero=np.empty(0))
+        return None
     if len(found) > 1:
         raise UsageError("events: one recording at most")
     event = found[0]
