@@ -18,6 +18,9 @@ from pvlvrt_compliance.profile.requirements import Requirement
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Waveforms
 
+REPEATED_RUNS = "repeated_runs"
+"""Kind that judges all runs of a row together, not one record."""
+
 
 def evaluate(
     profile: Profile, test: TestCase, waveforms: Waveforms, nominal: Nominal, available_power_w: float
@@ -43,13 +46,13 @@ def evaluate(
         A verdict on each requirement; what cannot be measured is `not_evaluated` with the reason, nothing is raised.
     """
     evidence = collect(profile, test, waveforms, nominal, available_power_w)
-    checks = _judge_all(profile, evidence)
+    checks = _judge_all(profile, test, evidence)
     return _result(profile, test, checks, evidence.measurements, waveforms.end_s - waveforms.t0_s)
 
 
 def errored(profile: Profile, test: TestCase, reason: str) -> TestResult:
     """Result of a test that gave no waveforms to judge: every requirement is an `error` with the reason."""
-    checks = [unjudged(kind, requirement, Status.ERROR, reason) for kind, requirement in profile.requirements.by_kind()]
+    checks = [unjudged(kind, requirement, Status.ERROR, reason) for kind, requirement in demands_of(profile, test)]
     return _result(profile, test, checks, Measurements(), 0.0)
 
 
@@ -73,6 +76,8 @@ def collect(
         measurements=measure(waveforms, nominal, scenario.start_s, scenario.clear_s, rules),
         rules=rules,
         blocked_below_pu=profile.conditions.blocked_below_pu.value,
+        k_factor=test.k_factor,
+        detection=profile.detection,
     )
 
 
@@ -83,8 +88,14 @@ def window_rules(profile: Profile) -> WindowRules:
     return WindowRules(**{name: number.value for name, number in profile.windows})
 
 
-def _judge_all(profile: Profile, evidence: Evidence) -> list[Check]:
-    demands = list(profile.requirements.by_kind())
+def demands_of(profile: Profile, test: TestCase) -> list[tuple[str, Requirement]]:
+    """Each requirement that a record of this test is judged by, with its kind."""
+    of_a_record = ((kind, demand) for kind, demand in profile.requirements.by_kind() if kind != REPEATED_RUNS)
+    return [(kind, demand) for kind, demand in of_a_record if test.judges(kind)]
+
+
+def _judge_all(profile: Profile, test: TestCase, evidence: Evidence) -> list[Check]:
+    demands = demands_of(profile, test)
     try:
         reason = reason_not_to_count(profile.conditions, evidence)
     except MeasurementError as error:

@@ -14,6 +14,7 @@ from pvlvrt_compliance.measure.power import instantaneous_power
 from pvlvrt_compliance.measure.quantities import Measurements, WindowMeasurements
 from pvlvrt_compliance.measure.sequences import phase_amplitudes, sequence_phasors
 from pvlvrt_compliance.measure.windows import Span, WindowRules, standard_windows
+from pvlvrt_compliance.profile.procedure import Detection
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import asked_sequences_pu
 from pvlvrt_compliance.units import Nominal
@@ -50,6 +51,10 @@ class Evidence:
         Where those windows lie.
     blocked_below_pu : float
         Phase currents that all stay below this to the end of the record show a blocked bridge (pu).
+    k_factor : float, optional
+        K that this test was run with, in place of the requirement's.
+    detection : Detection, optional
+        The profile's thresholds of a voltage event.
     """
 
     waveforms: Waveforms
@@ -59,6 +64,8 @@ class Evidence:
     measurements: Measurements
     rules: WindowRules
     blocked_below_pu: float
+    k_factor: float | None = None
+    detection: Detection | None = None
 
     @cached_property
     def frequency_hz(self) -> float:

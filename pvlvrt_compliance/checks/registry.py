@@ -1,25 +1,21 @@
-"""Which function judges a kind of requirement. Other packages add kinds through an entry point."""
+"""Which function judges which kind of requirement."""
 
 from collections.abc import Callable
+from importlib import import_module
 from importlib.metadata import entry_points
 from typing import Any
 
-from pvlvrt_compliance.checks import current_limit, dc_ripple, reactive_support, ride_through
 from pvlvrt_compliance.checks.evidence import Evidence
 from pvlvrt_compliance.checks.results import Check
+from pvlvrt_compliance.profile.requirements import Requirements
 
 ENTRY_POINT_GROUP = "pvlvrt_compliance.checks"
-"""An entry point of this group is named as the kind of requirement and refers to a `Judge`."""
 
-# The requirement's type belongs to its kind; a profile's `custom` kinds hand over a `CustomRequirement`.
+# The requirement type belongs to its kind; a profile's `custom` kinds hand over a `CustomRequirement`.
 Judge = Callable[[Any, Evidence], Check]
 
-_BUILT_IN: dict[str, Judge] = {
-    ride_through.KIND: ride_through.check_ride_through,
-    current_limit.KIND: current_limit.check_current_limit,
-    reactive_support.KIND: reactive_support.check_reactive_support,
-    dc_ripple.KIND: dc_ripple.check_dc_ripple,
-}
+BUILT_IN = tuple(kind for kind in Requirements.model_fields if kind != "custom")
+"""Kinds of this package: ``check_KIND`` in the file ``KIND.py`` of this folder judges each."""
 
 
 def find_judge(kind: str) -> Judge | None:
@@ -27,9 +23,10 @@ def find_judge(kind: str) -> Judge | None:
 
     Other packages are looked at only for kinds that are not built in.
     """
-    if kind in _BUILT_IN:
-        return _BUILT_IN[kind]
-    for entry_point in entry_points(group=ENTRY_POINT_GROUP, name=kind):
-        judge: Judge = entry_point.load()
+    if kind in BUILT_IN:
+        judge: Judge = getattr(import_module(f"pvlvrt_compliance.checks.{kind}"), f"check_{kind}")
         return judge
+    for entry_point in entry_points(group=ENTRY_POINT_GROUP, name=kind):
+        loaded: Judge = entry_point.load()
+        return loaded
     return None

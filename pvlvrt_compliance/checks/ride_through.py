@@ -129,9 +129,19 @@ def _on_connection(
 
 
 def _judge_recovery(requirement: RideThrough, evidence: Evidence) -> Check:
+    clear_s = evidence.scenario.clear_s
+    if requirement.recovery_fraction is None or requirement.recovery_time_s is None:
+        lasted_s = evidence.waveforms.end_s - evidence.scenario.start_s
+        return _on_connection(
+            requirement,
+            Status.PASS,
+            "connected throughout",
+            connected_s=lasted_s,
+            demanded_s=lasted_s,
+            at_s=evidence.waveforms.end_s,
+        )
     before_kw = evidence.power_before_kw
     allowed_s = requirement.recovery_time_s.value
-    clear_s = evidence.scenario.clear_s
     target = f"{100 * requirement.recovery_fraction.value:g} % of the {before_kw:.1f} kW before the sag"
     back_s = _recovered_after_s(evidence, requirement.recovery_fraction.value * before_kw)
     observed_s = evidence.waveforms.end_s - clear_s

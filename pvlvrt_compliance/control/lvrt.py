@@ -15,6 +15,7 @@ class LvrtParams(NamedTuple):
     V_detect: float  # a fault is flagged below it (pu)
     V_full: float  # full reactive power at and below it (pu)
     Q_full: float  # reactive power at and below V_full (pu of S_nom)
+    Q_set: float  # reactive power in normal operation (var); 0 in the paper
 
 
 class LvrtOrder(NamedTuple):
@@ -42,7 +43,7 @@ def lvrt_step(u_pos: complex, u_neg: complex, p: LvrtParams) -> LvrtOrder:
     V_pos = length(u_pos) / p.u_nom
     V_neg = length(u_neg) / p.u_nom
     if V_pos >= p.V_detect:
-        return LvrtOrder(V_fault=V_pos, fault=False, P_limit=p.S_nom, Q_ref=0.0)
+        return LvrtOrder(V_fault=V_pos, fault=False, P_limit=p.S_nom, Q_ref=p.Q_set)
     S_fault = max(V_pos - V_neg, 0.0) * p.S_nom  # (8)
     Q = min(reactive_power_of_voltage(V_pos, p), S_fault)  # (9), clipped as in Fig. 6(b)
     P_fault = math.sqrt(max(S_fault**2 - Q**2, 0.0))  # (10)

@@ -1,6 +1,7 @@
 """Rows of a test table made into the runs they stand for."""
 
 from collections.abc import Iterator
+from itertools import accumulate
 from typing import Any
 
 from pydantic import ValidationError
@@ -8,8 +9,9 @@ from pydantic import ValidationError
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.profile.curves import Envelope
 from pvlvrt_compliance.profile.problems import dotted, problem_lines
-from pvlvrt_compliance.profile.procedure import BY_ENVELOPE, Procedure, TestCase, TestRow
+from pvlvrt_compliance.profile.procedure import BY_ENVELOPE, Procedure, StepSequence, TestCase, TestRow
 from pvlvrt_compliance.profile.provenance import weakest
+from pvlvrt_compliance.scenario.events import VoltageProfile
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 
@@ -47,24 +49,38 @@ def expand(
     Raises
     ------
     UsageError
-        When the row names a power level that the procedure lacks, or a scenario field is out of its range.
+        When the row names a power level or steps that the procedure lacks, or a scenario field is out of its range.
     """
     angles = _angles_deg(row, procedure)
+    fixed = _scenario_fields(row, procedure, envelope)
     for power in row.powers:
+        irradiance = {"irradiance_w_m2": _irradiance_w_m2(power, procedure)}
         for run, angle in enumerate(angles, start=1):
-            fields = {
-                "sag": row.sag,
-                "duration_s": _duration_s(row, envelope, procedure),
-                "irradiance_w_m2": _irradiance_w_m2(power, procedure),
-                "point_on_wave_deg": angle,
-            }
+            fields = fixed | irradiance | {"point_on_wave_deg": angle} | overrides
+            if fixed["events"] and "events" in overrides:
+                fields["events"] = (*fixed["events"], *overrides["events"])
             yield TestCase(
                 id=_case_id(row, power, run, len(angles)),
                 title=f"{row.title or row.sag.describe()}, {power} power, {angle:g} deg",
-                scenario=make_scenario(procedure, **(fields | overrides)),
+                scenario=make_scenario(procedure, **fields),
                 clause=row.clause,
-                confidence=_confidence(row, envelope),
+                confidence=_confidence(row, procedure, envelope),
+                row="-".join(part for part in (row.id, power if len(row.powers) > 1 else "") if part),
+                k_factor=row.k_factor,
+                checks=row.checks,
+                long=row.long,
             )
+
+
+def _scenario_fields(row: TestRow, procedure: Procedure, envelope: Envelope | None) -> dict[str, Any]:
+    """What all runs of a row have in common; what the row leaves open is not among it."""
+    duration_s, steps = _duration_s(row, envelope, procedure)
+    fields: dict[str, Any] = {"sag": row.sag, "duration_s": duration_s, "events": (*steps, *row.events)}
+    fields["reactive_power_pu"] = row.reactive_power_pu
+    if row.grid is not None:
+        fields |= {"scr": row.grid.scr, "xr": row.grid.xr}
+    given = {"vector_group": row.vector_group, "before_s": row.before_s, "after_s": row.after_s}
+    return fields | {name: value for name, value in given.items() if value is not None}
 
 
 def _case_id(row: TestRow, power: str, run: int, runs: int) -> str:
@@ -78,12 +94,31 @@ def _angles_deg(row: TestRow, procedure: Procedure) -> tuple[float, ...]:
     return procedure.points_on_wave_deg.values if procedure.points_on_wave_deg else _ONE_RUN_AT_MAXIMUM
 
 
-def _duration_s(row: TestRow, envelope: Envelope | None, procedure: Procedure) -> float:
-    if row.duration_s != BY_ENVELOPE:
-        return float(row.duration_s)
+def _duration_s(
+    row: TestRow, envelope: Envelope | None, procedure: Procedure
+) -> tuple[float, tuple[VoltageProfile, ...]]:
+    """How long the disturbance lasts (s), and the voltage profile that its steps make."""
+    if row.steps is not None:
+        return _steps(row.steps, procedure)
+    if row.duration_s is not None and row.duration_s != BY_ENVELOPE:
+        return float(row.duration_s), ()
     if envelope is None:
         raise UsageError('duration_s: "envelope" needs requirements.ride_through.envelope')
-    return sag_duration_s(row.sag, envelope, procedure)
+    return sag_duration_s(row.sag, envelope, procedure), ()
+
+
+def _steps(sequence: StepSequence, procedure: Procedure) -> tuple[float, tuple[VoltageProfile, ...]]:
+    if sequence.table not in procedure.steps:
+        known = ", ".join(procedure.steps) or "none"
+        raise UsageError(f"steps.table: {sequence.table!r} is not in procedure.steps; it has: {known}")
+    try:
+        steps = procedure.steps[sequence.table].in_order(sequence.order)
+    except ValueError as error:
+        raise UsageError(f"steps.{error}") from None
+    ends = list(accumulate(step.duration_s for step in steps))
+    begins = [0.0, *ends[:-1]]
+    levels = [(t, step.voltage_pu) for step, *span in zip(steps, begins, ends, strict=True) for t in span]
+    return ends[-1], (VoltageProfile(points=((0.0, 1.0), *levels, (ends[-1], 1.0))),)
 
 
 def _irradiance_w_m2(power: str, procedure: Procedure) -> float:
@@ -93,6 +128,10 @@ def _irradiance_w_m2(power: str, procedure: Procedure) -> float:
     return procedure.irradiance_w_m2[power].value
 
 
-def _confidence(row: TestRow, envelope: Envelope | None) -> str:
-    by_envelope = envelope is not None and row.duration_s == BY_ENVELOPE
-    return weakest([row.confidence, envelope.confidence] if envelope and by_envelope else [row.confidence])
+def _confidence(row: TestRow, procedure: Procedure, envelope: Envelope | None) -> str:
+    marks = [row.confidence]
+    if envelope is not None and row.duration_s == BY_ENVELOPE:
+        marks.append(envelope.confidence)
+    if row.steps is not None:
+        marks.append(procedure.steps[row.steps.table].confidence)
+    return weakest(marks)

@@ -1,5 +1,6 @@
 """Ride-through envelopes and support curves: broken lines with a mark."""
 
+from enum import StrEnum
 from itertools import pairwise
 from typing import Annotated, Literal
 
@@ -13,6 +14,27 @@ Point = tuple[float, float]
 Points = tuple[Point, ...]
 
 LARGEST_LEVEL_PU = 2.0
+
+VoltageQuantity = Literal[
+    "positive_sequence",
+    "mean_phase",
+    "lowest_phase",
+    "lowest_line_to_line",
+    "highest_phase",
+    "highest_line_to_line",
+]
+"""Voltage that a limit speaks of: one-cycle fundamental amplitudes in pu of nominal, the extreme one by its name."""
+
+
+class Side(StrEnum):
+    """Whether a limit bounds the voltage from below or from above."""
+
+    LOW = "low"
+    HIGH = "high"
+
+    def allows(self, quantity: str) -> bool:
+        """Whether a quantity makes sense on this side: the lowest voltage never meets an upper limit first."""
+        return not quantity.startswith("highest" if self is Side.LOW else "lowest")
 
 
 def _columns(points: Points) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -45,14 +67,15 @@ def _levels_in_range(points: Points) -> None:
 
 
 class Envelope(Marked):
-    """Voltage over time since the start of a sag, at and above which an inverter must stay connected.
+    """Voltage over time since the start of a disturbance, up to which an inverter must stay connected.
 
-    ``linear`` joins the points by straight lines, ``step`` holds a level until the next point. Before the first and
-    after the last point their levels hold.
+    At and above it during a sag; as ``envelope_over_voltage``, at and below it during a swell. ``linear`` joins the
+    points by straight lines, ``step`` holds a level until the next point. Before the first and after the last point
+    their levels hold.
     """
 
     clause: str = ""
-    voltage_quantity: Literal["positive_sequence"]
+    voltage_quantity: VoltageQuantity
     interpolation: Literal["linear", "step"]
     points: Annotated[Points, AfterValidator(_envelope_points)] = Field(min_length=1, description="[t_s, u_pu] each")
 
@@ -64,12 +87,13 @@ class Envelope(Marked):
         reached = np.searchsorted(times, t_s, side="right") - 1
         return levels[np.maximum(reached, 0)]
 
-    def time_of(self, u_pu: float) -> float | None:
-        """How long a voltage must be ridden through (s): the first instant the envelope rises above it.
+    def time_of(self, u_pu: float, side: Side = Side.LOW) -> float | None:
+        """How long a voltage must be ridden through (s): the first instant the envelope passes it.
 
         None where it never does: the voltage must be ridden through for ever.
         """
-        above = next((k for k, (_, level) in enumerate(self.points) if level > u_pu), None)
+        sign = 1 if side is Side.LOW else -1
+        above = next((k for k, (_, level) in enumerate(self.points) if sign * level > sign * u_pu), None)
         if above is None:
             return None
         t_above, u_above = self.points[above]
@@ -89,3 +113,15 @@ class SupportCurve(Marked):
         """Reactive power (pu) at voltages (pu), straight lines between the points; shape of ``u_pu``."""
         voltages, powers = _columns(self.points)
         return np.asarray(np.interp(np.asarray(u_pu, dtype=np.float64), voltages, powers))
+
+
+class RatioCurve(Marked):
+    """Share of the reactive current in the total current (-) over the positive-sequence voltage (pu)."""
+
+    clause: str = ""
+    points: Annotated[Points, AfterValidator(_curve_points)] = Field(min_length=2, description="[u_pu, share] each")
+
+    def share_at(self, u_pu: ArrayLike) -> NDArray[np.float64]:
+        """Share at voltages (pu), straight lines between the points; shape of ``u_pu``."""
+        voltages, shares = _columns(self.points)
+        return np.asarray(np.interp(np.asarray(u_pu, dtype=np.float64), voltages, shares))

@@ -39,7 +39,16 @@ def dotted(location: Location) -> str:
 
 def problem_lines(error: ValidationError, model: type[BaseModel]) -> list[tuple[Location, str]]:
     """Location and text of every problem that validation against ``model`` found."""
-    return [(problem["loc"], _in_words(problem, model)) for problem in error.errors(include_url=False)]
+    problems = error.errors(include_url=False)
+    return [_at_its_key(problem["loc"], _in_words(problem, model), model) for problem in problems]
+
+
+def _at_its_key(location: Location, text: str, model: type[BaseModel]) -> tuple[Location, str]:
+    """Move the key that a check on a whole table names first (``key: what is wrong``) into the location."""
+    key, colon, rest = text.partition(": ")
+    if colon and key.split(".")[0] in known_keys(model, location):
+        return (*location, *key.split(".")), rest
+    return location, text
 
 
 def _in_words(problem: Any, model: type[BaseModel]) -> str:

@@ -1,10 +1,12 @@
 """How a profile is tested: which sags, at which power, how often, and when a test counts at all."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, ValidatorFunctionWrapHandler, WrapValidator
+from pydantic import Field, ValidatorFunctionWrapHandler, WrapValidator, model_validator
 
 from pvlvrt_compliance.profile.provenance import Fraction, Frozen, Marked, NotNegative, Number, Numbers, Positive
+from pvlvrt_compliance.profile.sequences import CornerTests, StepTable
+from pvlvrt_compliance.scenario.events import Event
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 
@@ -41,6 +43,25 @@ class Windows(Frozen):
     after_clearing_s: NotNegative = Field(description="shortest record past clearing that has such a stretch")
 
 
+class Detection(Frozen):
+    """Thresholds on V+ between which a voltage event lasts; without those of a swell, swells are not looked for."""
+
+    enter_below_pu: Positive
+    leave_above_pu: Positive
+    enter_above_pu: Positive | None = None
+    leave_below_pu: Positive | None = None
+
+    @model_validator(mode="after")
+    def _hysteresis(self) -> Self:
+        if self.leave_above_pu.value < self.enter_below_pu.value:
+            raise ValueError("leave_above_pu: must not be below enter_below_pu")
+        if (self.enter_above_pu is None) != (self.leave_below_pu is None):
+            raise ValueError("enter_above_pu and leave_below_pu go together")
+        if self.enter_above_pu and self.leave_below_pu and self.leave_below_pu.value > self.enter_above_pu.value:
+            raise ValueError("leave_below_pu: must not be above enter_above_pu")
+        return self
+
+
 class Procedure(Frozen):
     """What all tests of a profile share."""
 
@@ -49,10 +70,28 @@ class Procedure(Frozen):
     default_duration_s: Positive = Field(description="of a sag that the envelope never limits")
     irradiance_w_m2: dict[str, Number] = Field(default_factory=dict, description="by the name of the power level")
     points_on_wave_deg: Numbers | None = Field(default=None, description="one run of each test at each angle")
+    steps: dict[str, StepTable] = Field(
+        default_factory=dict, description="named voltage steps, by the name of the table"
+    )
+    corners: CornerTests | None = Field(default=None, description="tests made from the regions")
+
+
+class Grid(Frozen):
+    """The grid of one test."""
+
+    scr: float = Field(gt=0.5, description="short-circuit ratio")
+    xr: float = Field(default=10.0, gt=0)
+
+
+class StepSequence(Frozen):
+    """Named steps one after the other, all phases alike."""
+
+    table: str = Field(description="one of procedure.steps")
+    order: str = Field(min_length=1, description="letters of the steps, each with its primes: ABCD'F")
 
 
 class TestRow(Marked):
-    """A row of the test table: one sag, applied at each power level and at each point on wave.
+    """A row of the test table: one sag or sequence, applied at each power level and at each point on wave.
 
     The mark covers the sag and a duration that is a number; a duration by the envelope carries the envelope's too.
     """
@@ -62,10 +101,28 @@ class TestRow(Marked):
     id: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")
     title: str = ""
     clause: str = Field(min_length=1)
-    sag: Sag
-    duration_s: Duration
+    sag: Sag = Field(default=Sag(depth=0), description="without it, only the events happen")
+    duration_s: Duration | None = Field(default=None, description="of the sag; of steps, what they last")
+    steps: StepSequence | None = None
+    events: tuple[Event, ...] = Field(default=(), description="what happens besides; times from the start of the sag")
+    grid: Grid | None = Field(default=None, description="none: stiff")
+    vector_group: str | None = None
     powers: tuple[str, ...] = Field(min_length=1)
     points_on_wave_deg: tuple[float, ...] | None = Field(default=None, min_length=1)
+    reactive_power_pu: float = Field(default=0.0, ge=-1, le=1, description="set-point before and after the sag")
+    k_factor: float | None = Field(default=None, gt=0, description="in place of the requirement's K")
+    before_s: float | None = Field(default=None, gt=0, description="in place of the procedure's")
+    after_s: float | None = Field(default=None, gt=0, description="in place of the procedure's")
+    checks: tuple[str, ...] | None = Field(default=None, min_length=1, description="kinds judged; none: all")
+    long: bool = Field(default=False, description="runs on request only (--include-long)")
+
+    @model_validator(mode="after")
+    def _lasts(self) -> Self:
+        if (self.duration_s is None) == (self.steps is None):
+            raise ValueError(f"duration_s: {'missing' if self.steps is None else 'steps last as long as they say'}")
+        if self.steps is not None and self.sag.depth > 0:
+            raise ValueError("steps: a test has a sag or steps, not both")
+        return self
 
 
 class TestCase(Frozen):
@@ -78,3 +135,11 @@ class TestCase(Frozen):
     scenario: Scenario
     clause: str = ""
     confidence: str = ""
+    row: str = Field(default="", description="id of the row that it is a run of")
+    k_factor: float | None = None
+    checks: tuple[str, ...] | None = None
+    long: bool = False
+
+    def judges(self, kind: str) -> bool:
+        """Whether the test is judged by a kind of requirement."""
+        return self.checks is None or kind in self.checks

@@ -3,14 +3,16 @@
 import hashlib
 from collections import Counter
 from collections.abc import Collection
+from functools import cached_property
 from typing import Any, Literal
 
 from pydantic import Field
 
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.profile.catalogue import expand, make_scenario, sag_duration_s
+from pvlvrt_compliance.profile.corners import corner_rows
 from pvlvrt_compliance.profile.curves import Envelope
-from pvlvrt_compliance.profile.procedure import Conditions, Procedure, TestCase, TestRow, Windows
+from pvlvrt_compliance.profile.procedure import Conditions, Detection, Procedure, TestCase, TestRow, Windows
 from pvlvrt_compliance.profile.provenance import VERIFIED, Frozen, canonical_json, marks_in
 from pvlvrt_compliance.profile.requirements import Requirements
 from pvlvrt_compliance.scenario.sag import Sag
@@ -27,8 +29,17 @@ class Profile(Frozen):
     requirements: Requirements
     conditions: Conditions
     windows: Windows | None = Field(default=None, description="without it, the standard windows")
+    detection: Detection | None = Field(default=None, description="without it, the sag that was asked for is the event")
     procedure: Procedure
     rows: tuple[TestRow, ...] = Field(default=(), alias="tests")
+
+    @cached_property
+    def all_rows(self) -> tuple[TestRow, ...]:
+        """The test table, and the rows made from the regions."""
+        regions = self.requirements.ride_through.regions if self.requirements.ride_through else None
+        if regions is None or self.procedure.corners is None:
+            return self.rows
+        return (*self.rows, *corner_rows(regions, self.procedure.corners))
 
     @property
     def envelope(self) -> Envelope | None:
@@ -56,7 +67,7 @@ class Profile(Frozen):
         UsageError
             When a replaced field is unknown or out of its range.
         """
-        return tuple(case for row in self.rows for case in expand(row, self.procedure, self.envelope, overrides))
+        return tuple(case for row in self.all_rows for case in expand(row, self.procedure, self.envelope, overrides))
 
     def ad_hoc_test(self, sag: Sag, duration_s: float | None = None, **fields: Any) -> TestCase:
         """A test of the user's own: outside the table, so without clause and mark.
@@ -89,8 +100,7 @@ class Profile(Frozen):
         give a test in ``case_ids``; without it, all. Rows with the same mark and source share a sentence.
         """
         parts = [*self.requirements.by_kind(), ("conditions", self.conditions), ("procedure", self.procedure)]
-        if self.windows:
-            parts.append(("windows", self.windows))
+        parts += [(name, part) for name in ("windows", "detection") if (part := getattr(self, name)) is not None]
         sentences = [
             f"{part} {name}: {item.confidence} ({item.source})"
             for part, content in parts
@@ -98,7 +108,7 @@ class Profile(Frozen):
             if item.confidence not in VERIFIED
         ]
         doubtful: dict[str, list[str]] = {}
-        for row in self.rows:
+        for row in self.all_rows:
             cases = {case.id for case in expand(row, self.procedure, self.envelope, {})}
             if row.confidence not in VERIFIED and (case_ids is None or not cases.isdisjoint(case_ids)):
                 doubtful.setdefault(f"{row.confidence} ({row.source})", []).append(row.id)
@@ -107,7 +117,9 @@ class Profile(Frozen):
     def inconsistencies(self) -> list[str]:
         """Problems that no single key shows: rows that cannot be expanded, ids that occur twice."""
         problems, ids = [], Counter[str]()
-        for index, row in enumerate(self.rows):
+        if self.procedure.corners is not None and len(self.all_rows) == len(self.rows):
+            problems.append("procedure.corners: needs requirements.ride_through.regions with times to stay connected")
+        for index, row in enumerate(self.all_rows):
             try:
                 ids.update(case.id for case in expand(row, self.procedure, self.envelope, {}))
             except UsageError as error:

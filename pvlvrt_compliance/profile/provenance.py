@@ -6,7 +6,7 @@ and on a tolerance that this project chose.
 
 import json
 from collections.abc import Iterable
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Generic, Literal, TypeVar, get_args
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
@@ -56,6 +56,15 @@ class Flag(Marked):
     """A yes or no with its mark."""
 
     value: bool
+
+
+Word = TypeVar("Word")
+
+
+class Choice(Marked, Generic[Word]):
+    """One of some words, with its mark."""
+
+    value: Word
 
 
 def _positive(number: Number) -> Number:

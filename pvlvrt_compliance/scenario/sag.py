@@ -19,7 +19,8 @@ _HEALTHY_OF_PAIR = {"bc": 0, "ca": 1, "ab": 2}
 class Sag(BaseModel):
     """A rectangular voltage sag at the terminals without the inverter's current.
 
-    With ``two_phase`` false, the phase-to-neutral magnitudes of ``phases`` become ``1 - depth`` and the angles stay.
+    With ``two_phase`` false, the phase-to-neutral magnitudes of ``phases`` become ``1 - depth`` and the angles stay, or
+    turn by ``angle_deg`` (with depth 0: a jump of the angle of these phases alone).
     With ``type``, the sag is one of Bollen's types A to G with the characteristic voltage ``1 - depth``; ``phases``
     then names the symmetrical phase (a by default).
     With ``two_phase`` true, the line-to-line voltage of the pair ``phases`` becomes ``1 - depth`` and there is no
@@ -32,6 +33,7 @@ class Sag(BaseModel):
     phases: Phases = "abc"
     two_phase: bool = False
     type: Type | None = Field(default=None, description="of Bollen's classification, in place of two_phase")
+    angle_deg: float = Field(default=0, ge=-180, le=180, description="that the phases named are turned ahead by")
 
     @model_validator(mode="after")
     def _pair(self) -> Self:
@@ -39,6 +41,8 @@ class Sag(BaseModel):
             raise ValueError(f"a two-phase sag needs a pair of phases: ab, bc or ca, not {self.phases!r}")
         if self.type and (self.two_phase or len(self.phases) == 2):
             raise ValueError("a sag by type has one symmetrical phase: a, b or c, and no two_phase")
+        if self.angle_deg and (self.two_phase or self.type):
+            raise ValueError("angle_deg does not go with two_phase or type, which set the angles themselves")
         return self
 
     def phasors_pu(self) -> tuple[complex, complex, complex]:
@@ -48,7 +52,8 @@ class Sag(BaseModel):
         if self.type:
             return _turned(_phasors_of_type(self.type, residual), "abc".index(self.phases[0]))
         if not self.two_phase:
-            a, b, c = (residual if name in self.phases else 1.0 for name in "abc")
+            left = cmath.rect(residual, math.radians(self.angle_deg)) if self.angle_deg else residual
+            a, b, c = (left if name in self.phases else 1.0 for name in "abc")
             return a * healthy[0], b * healthy[1], c * healthy[2]
         # The line-to-line voltage of a pair is what type C leaves of it, seen from the third phase.
         return _turned(_phasors_of_type("C", residual), _HEALTHY_OF_PAIR[self.phases])
@@ -60,6 +65,8 @@ class Sag(BaseModel):
 
     def describe(self) -> str:
         """Name the sag in words, for tables and reports."""
+        if self.depth == 0 and self.angle_deg:
+            return f"phase{'s' if len(self.phases) > 1 else ''} {self.phases} turned by {self.angle_deg:g} deg"
         if self.depth == 0:
             return "no sag"
         if self.type:

@@ -38,6 +38,7 @@ class Scenario(BaseModel):
         pattern=r"^(D|Y|YN)(d|y|yn)(1[01]|[0-9])$",
         description="of the transformer beyond which sags happen, Dyn11 for instance; none: at the terminals",
     )
+    reactive_power_pu: float = Field(default=0.0, ge=-1, le=1, description="set-point outside of sags, of 500 kVA")
     before_s: float = Field(default=0.3, ge=0.25, le=60, description="record before the sag")
     after_s: float = Field(default=1.1, ge=0.1, le=120, description="record after clearing")
     events: tuple[Event, ...] = Field(default=(), description="what happens besides; times from the start of the sag")

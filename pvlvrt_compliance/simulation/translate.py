@@ -182,6 +182,7 @@ def controller_params(parameters: Parameters, scenario: Scenario) -> ControllerP
             V_detect=c.fault_threshold_pu,
             V_full=c.reactive_plateau_voltage_pu,
             Q_full=c.reactive_plateau_pu,
+            Q_set=scenario.reactive_power_pu * nominal.apparent_power_va,
         ),
         dc_voltage=DcVoltageRegulatorParams(K_P=c.dc_proportional_gain_w_per_v, K_I=c.dc_integral_gain_w_per_vs),
         mppt=MpptParams(

@@ -1,0 +1,87 @@
+"""Currents: how large they may be, and what they must do for the voltage during a sag."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from pvlvrt_compliance.profile.curves import RatioCurve, SupportCurve
+from pvlvrt_compliance.profile.provenance import Choice, Flag, Fraction, NotNegative, Positive
+from pvlvrt_compliance.profile.requirements.base import Requirement
+
+DeadBandMode = Literal["none", "shift", "step"]
+Reference = Literal["prefault", "nominal"]
+
+
+class CurrentLimit(Requirement):
+    """Fundamental phase currents, once settled, and the instantaneous peak, always."""
+
+    limit_pu: Positive
+    tolerance_pu: NotNegative
+    settling_s: NotNegative = Field(description="after the start and after clearing")
+    peak_pu: Positive
+
+    @property
+    def allowed_pu(self) -> float:
+        """Largest fundamental amplitude that passes (pu)."""
+        return self.limit_pu.value + self.tolerance_pu.value
+
+
+class ReactiveSupport(Requirement):
+    """Mean reactive power during a sag against a curve over the voltage: Q of V."""
+
+    curve: SupportCurve
+    clip_to_capability: Flag = Field(description="demand at most (V+ - V-) S")
+    no_support_from_pu: Positive = Field(description="V+ at and above which no reactive power is wanted")
+    tolerance_pu: NotNegative = Field(description="times V+ S")
+
+
+class ReactiveCurrent(Requirement):
+    """Additional reactive current of a sequence in proportion to the change of its voltage: delta i = K f(delta u).
+
+    With the dead band d, f is delta u (``none``), what exceeds d (``shift``), or delta u once it exceeds d (``step``).
+    Demands beyond ``limit_pu`` are clipped, both sequences in the same proportion. A test may set another K.
+    """
+
+    k: Positive
+    dead_band_pu: NotNegative
+    dead_band_mode: Choice[DeadBandMode]
+    reference: Choice[Reference] = Field(description="what delta u counts from")
+    tolerance_plus_pu: NotNegative
+    tolerance_minus_pu: NotNegative
+    limit_pu: Positive = Field(description="total current up to which support is demanded")
+    blocking_allowed_below_pu: NotNegative = Field(description="V+ below which a blocked bridge is let off")
+
+
+class SupportDynamics(Requirement):
+    """How fast the additional reactive current of the positive sequence comes and settles.
+
+    Activation: it has moved by ``activation_pu``. Response: it has reached ``response_fraction`` of its final value.
+    Both from the start of the sag. Settling: from activation to the last entry into the band around the final value.
+    """
+
+    activation_pu: Positive
+    activation_s: Positive
+    response_fraction: Fraction
+    response_s: Positive
+    settling_s: Positive
+    band_plus: Positive = Field(description="fraction of the final value")
+    band_minus: Positive = Field(description="fraction of the final value")
+    least_change_pu: Positive = Field(description="a final value below this is not timed")
+
+
+class ReactiveRatio(Requirement):
+    """Share of the reactive current in the total current during a sag, at least a curve over the voltage."""
+
+    curve: RatioCurve
+    within_s: NotNegative = Field(description="from the start of the sag")
+    tolerance: NotNegative
+    least_current_pu: Positive = Field(description="below this total current there is no share")
+
+
+class Toggling(Requirement):
+    """Support that switches on and off at a threshold although the voltage stands still."""
+
+    on_pu: Positive = Field(description="reactive current above which support is on")
+    off_pu: Positive = Field(description="reactive current below which it is off again")
+    most_activations: Positive = Field(description="between two steps of the voltage")
+    settling_s: NotNegative = Field(description="after each step of the voltage, not looked at")
