@@ -78,6 +78,7 @@ def collect(
         blocked_below_pu=profile.conditions.blocked_below_pu.value,
         k_factor=test.k_factor,
         detection=profile.detection,
+        requirements=profile.requirements,
     )
 
 

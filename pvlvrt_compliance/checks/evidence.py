@@ -3,26 +3,32 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.measure.fourier import one_cycle_mean
+from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_mean
 from pvlvrt_compliance.measure.frequency import frequency_before
 from pvlvrt_compliance.measure.power import instantaneous_power
 from pvlvrt_compliance.measure.quantities import Measurements, WindowMeasurements
 from pvlvrt_compliance.measure.sequences import phase_amplitudes, sequence_phasors
 from pvlvrt_compliance.measure.windows import Span, WindowRules, standard_windows
 from pvlvrt_compliance.profile.procedure import Detection
+from pvlvrt_compliance.profile.requirements import Requirements
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import asked_sequences_pu
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
 
 Mask = NDArray[np.bool_]
+Value = TypeVar("Value", np.float64, np.complex128)
 
 _SAME_INSTANT_S = 1e-9
+
+# A voltage below this (pu) has no angle that a current could be split by; what is found fades with the voltage.
+_NO_ANGLE_PU = 5e-3
 
 
 class NotApplicable(Exception):  # noqa: N818 - it is a verdict, not an error
@@ -55,6 +61,8 @@ class Evidence:
         K that this test was run with, in place of the requirement's.
     detection : Detection, optional
         The profile's thresholds of a voltage event.
+    requirements : Requirements, optional
+        All that the profile demands, for checks that depend on each other's demands.
     """
 
     waveforms: Waveforms
@@ -66,6 +74,7 @@ class Evidence:
     blocked_below_pu: float
     k_factor: float | None = None
     detection: Detection | None = None
+    requirements: Requirements | None = None
 
     @cached_property
     def frequency_hz(self) -> float:
@@ -97,6 +106,16 @@ class Evidence:
     def current_pu(self) -> Samples:
         """Instantaneous phase currents, shape (3, n)."""
         return self._joined(lambda segment: np.stack(segment.three_phase("i"))) / self.nominal.phase_current_peak_a
+
+    @cached_property
+    def current_positive_pu(self) -> ComplexSamples:
+        """One-cycle positive-sequence current, active + j reactive, shape (n,)."""
+        return self._sequence_current_pu(0)
+
+    @cached_property
+    def current_negative_pu(self) -> ComplexSamples:
+        """One-cycle negative-sequence current, active + j reactive, shape (n,)."""
+        return self._sequence_current_pu(1)
 
     @cached_property
     def active_power_kw(self) -> Samples:
@@ -185,6 +204,27 @@ class Evidence:
         before = self.measurements.before
         return required(before.active_power_kw if before else None, "P before the sag")
 
+    def before(self) -> WindowMeasurements:
+        """Measurements of the window before the sag.
+
+        Raises
+        ------
+        MeasurementError
+            When the record cannot be measured in it.
+        """
+        if self.measurements.before is None:
+            raise MeasurementError("the window before the sag cannot be measured")
+        return self.measurements.before
+
+    def is_event(self, v_positive_pu: float) -> bool:
+        """Whether a V+ (pu) is a sag or a swell by the profile's thresholds; without them, every test is one."""
+        if self.detection is None:
+            return True
+        swell = self.detection.enter_above_pu
+        return v_positive_pu < self.detection.enter_below_pu.value or (
+            swell is not None and v_positive_pu > swell.value
+        )
+
     @property
     def during_span(self) -> Span | None:
         """The during-window, None when the sag is too short for one."""
@@ -220,10 +260,17 @@ class Evidence:
         base = self.nominal.phase_voltage_peak_v
         return self._joined(lambda segment: np.abs(sequence_phasors(segment, kind, self.frequency_hz)[index]) / base)
 
+    def _sequence_current_pu(self, index: int) -> ComplexSamples:
+        def relative_to_voltage(segment: Segment) -> ComplexSamples:
+            u, i = (sequence_phasors(segment, kind, self.frequency_hz)[index] for kind in "ui")
+            return u * i.conj() / np.maximum(np.abs(u), _NO_ANGLE_PU * self.nominal.phase_voltage_peak_v)
+
+        return self._joined(relative_to_voltage) / self.nominal.phase_current_peak_a
+
     def _cycle_mean(self, segment: Segment, x: Samples) -> Samples:
         return one_cycle_mean(x, segment.dt_s, self.frequency_hz)
 
-    def _joined(self, series: Callable[[Segment], Samples]) -> Samples:
+    def _joined(self, series: Callable[[Segment], NDArray[Value]]) -> NDArray[Value]:
         return np.concatenate([series(segment) for segment in self.waveforms], axis=-1)
 
 

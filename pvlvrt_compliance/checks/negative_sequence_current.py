@@ -1,0 +1,11 @@
+"""The inverter adds reactive current of the negative sequence in proportion to the change of its voltage."""
+
+from pvlvrt_compliance.checks.evidence import Evidence
+from pvlvrt_compliance.checks.k_factor import NEGATIVE, check_k_factor
+from pvlvrt_compliance.checks.results import Check
+from pvlvrt_compliance.profile.requirements import ReactiveCurrent
+
+
+def check_negative_sequence_current(requirement: ReactiveCurrent, evidence: Evidence) -> Check:
+    """Judge the negative sequence; see `check_k_factor`."""
+    return check_k_factor(NEGATIVE, requirement, evidence)
