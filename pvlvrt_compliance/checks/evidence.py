@@ -3,15 +3,20 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_mean
+from pvlvrt_compliance.measure.fourier import one_cycle_mean
 from pvlvrt_compliance.measure.frequency import frequency_before
-from pvlvrt_compliance.measure.power import instantaneous_power
+from pvlvrt_compliance.measure.power import (
+    Power,
+    SequenceCurrent,
+    instantaneous_power,
+    negative_sequence_current,
+    sequence_current,
+)
 from pvlvrt_compliance.measure.quantities import Measurements, WindowMeasurements
 from pvlvrt_compliance.measure.sequences import phase_amplitudes, sequence_phasors
 from pvlvrt_compliance.measure.windows import Span, WindowRules, standard_windows
@@ -23,12 +28,8 @@ from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
 
 Mask = NDArray[np.bool_]
-Value = TypeVar("Value", np.float64, np.complex128)
 
 _SAME_INSTANT_S = 1e-9
-
-# A voltage below this (pu) has no angle that a current could be split by; what is found fades with the voltage.
-_NO_ANGLE_PU = 5e-3
 
 
 class NotApplicable(Exception):  # noqa: N818 - it is a verdict, not an error
@@ -108,14 +109,14 @@ class Evidence:
         return self._joined(lambda segment: np.stack(segment.three_phase("i"))) / self.nominal.phase_current_peak_a
 
     @cached_property
-    def current_positive_pu(self) -> ComplexSamples:
-        """One-cycle positive-sequence current, active + j reactive, shape (n,)."""
-        return self._sequence_current_pu(0)
+    def current_positive_pu(self) -> SequenceCurrent:
+        """One-cycle active and reactive current of the positive sequence, shape (n,) each; NaN without voltage."""
+        return self._sequence_current_pu(0, sequence_current)
 
     @cached_property
-    def current_negative_pu(self) -> ComplexSamples:
-        """One-cycle negative-sequence current, active + j reactive, shape (n,)."""
-        return self._sequence_current_pu(1)
+    def current_negative_pu(self) -> SequenceCurrent:
+        """One-cycle active and reactive current of the negative sequence, shape (n,) each; NaN without voltage."""
+        return self._sequence_current_pu(1, negative_sequence_current)
 
     @cached_property
     def active_power_kw(self) -> Samples:
@@ -126,6 +127,11 @@ class Evidence:
     def reactive_power_kvar(self) -> Samples:
         """One-cycle mean of Q, shape (n,)."""
         return self._joined(lambda segment: self._cycle_mean(segment, instantaneous_power(segment).q)) / 1e3
+
+    @cached_property
+    def instantaneous_kva(self) -> Power:
+        """Instantaneous P (kW) and Q (kvar), shape (n,) each."""
+        return Power(*self._joined(lambda segment: np.stack(instantaneous_power(segment))) / 1e3)
 
     @cached_property
     def dc_voltage_v(self) -> Samples:
@@ -216,15 +222,6 @@ class Evidence:
             raise MeasurementError("the window before the sag cannot be measured")
         return self.measurements.before
 
-    def is_event(self, v_positive_pu: float) -> bool:
-        """Whether a V+ (pu) is a sag or a swell by the profile's thresholds; without them, every test is one."""
-        if self.detection is None:
-            return True
-        swell = self.detection.enter_above_pu
-        return v_positive_pu < self.detection.enter_below_pu.value or (
-            swell is not None and v_positive_pu > swell.value
-        )
-
     @property
     def during_span(self) -> Span | None:
         """The during-window, None when the sag is too short for one."""
@@ -260,17 +257,17 @@ class Evidence:
         base = self.nominal.phase_voltage_peak_v
         return self._joined(lambda segment: np.abs(sequence_phasors(segment, kind, self.frequency_hz)[index]) / base)
 
-    def _sequence_current_pu(self, index: int) -> ComplexSamples:
-        def relative_to_voltage(segment: Segment) -> ComplexSamples:
+    def _sequence_current_pu(self, index: int, split: Callable[..., SequenceCurrent]) -> SequenceCurrent:
+        def in_segment(segment: Segment) -> Samples:
             u, i = (sequence_phasors(segment, kind, self.frequency_hz)[index] for kind in "ui")
-            return u * i.conj() / np.maximum(np.abs(u), _NO_ANGLE_PU * self.nominal.phase_voltage_peak_v)
+            return np.stack(split(u, i)) / self.nominal.phase_current_peak_a
 
-        return self._joined(relative_to_voltage) / self.nominal.phase_current_peak_a
+        return SequenceCurrent(*self._joined(in_segment))
 
     def _cycle_mean(self, segment: Segment, x: Samples) -> Samples:
         return one_cycle_mean(x, segment.dt_s, self.frequency_hz)
 
-    def _joined(self, series: Callable[[Segment], NDArray[Value]]) -> NDArray[Value]:
+    def _joined(self, series: Callable[[Segment], Samples]) -> Samples:
         return np.concatenate([series(segment) for segment in self.waveforms], axis=-1)
 
 

@@ -1,9 +1,8 @@
 """Additional reactive current in proportion to the change of a sequence's voltage: delta i = K f(delta u).
 
-Signs. Reactive current is positive where it lags the voltage of its sequence (generator sign), which raises that voltage
-over an inductive grid. delta u counts what the voltage has fallen by. A sag thus demands positive current of the positive
-sequence, a swell negative, and the V- of an unbalanced sag, which has risen, negative current of the negative sequence:
-one formula, and each demand pulls its voltage back.
+Signs are those of `measure.power`: reactive current is positive where it pulls the voltage of its sequence back, up in
+the positive sequence, down in the negative one. delta u therefore counts what V+ has fallen by and what V- has risen
+by, so that the one formula holds for both, and for a swell too, where all of it is negative.
 """
 
 import math
@@ -13,6 +12,7 @@ from pvlvrt_compliance.checks.evidence import Evidence, NotApplicable, require_f
 from pvlvrt_compliance.checks.results import Check
 from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
 from pvlvrt_compliance.measure.quantities import WindowMeasurements
+from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.profile.provenance import Marked
 from pvlvrt_compliance.profile.requirements import ReactiveCurrent
 from pvlvrt_compliance.profile.requirements.current import DeadBandMode
@@ -38,7 +38,7 @@ NEGATIVE = Sequence("negative_sequence_current", "negative", 0.0)
 class _Asked(NamedTuple):
     """What the requirement asks of one sequence (pu)."""
 
-    delta_u_pu: float  # fall of the voltage
+    delta_u_pu: float  # what the voltage moved by, as a sag moves it
     clipped_pu: float  # additional reactive current
     clipped: bool
 
@@ -65,8 +65,8 @@ def check_k_factor(sequence: Sequence, requirement: ReactiveCurrent, evidence: E
     window = evidence.during()
     _let_off(sequence, requirement, evidence, window)
     asked = _asked(sequence, requirement, evidence, window)
-    band = _band(asked, requirement, evidence.is_event(required(window.voltage_positive_pu, "V+")))
-    t_s, additional = _additional(sequence, evidence, window)
+    band = _band(asked, requirement, is_event(evidence, required(window.voltage_positive_pu, "V+")))
+    t_s, additional = additional_current(sequence, evidence, Span(window.start_s, window.end_s))
     measured = float(additional.mean())
     to_high, to_low = band.high - measured, measured - band.low
     at_high = to_high < to_low
@@ -88,7 +88,7 @@ def check_k_factor(sequence: Sequence, requirement: ReactiveCurrent, evidence: E
 def _let_off(sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence, window: WindowMeasurements) -> None:
     v_positive = required(window.voltage_positive_pu, "V+")
     allowed_below = requirement.blocking_allowed_below_pu.value
-    if v_positive < allowed_below and _is_blocked(evidence, window):
+    if v_positive < allowed_below and is_blocked(evidence, window):
         raise NotApplicable(
             f"the bridge is blocked at V+ = {v_positive:.3f} pu, which is allowed below {allowed_below:g} pu"
         )
@@ -99,7 +99,7 @@ def _let_off(sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidenc
         )
 
 
-def _is_blocked(evidence: Evidence, window: WindowMeasurements) -> bool:
+def is_blocked(evidence: Evidence, window: WindowMeasurements) -> bool:
     """Whether no phase carries current for a cycle somewhere in the window."""
     amplitudes = evidence.current_phase_pu[:, evidence.between(window.start_s, window.end_s)]
     return bool((amplitudes < evidence.blocked_below_pu).all(axis=0).any())
@@ -113,27 +113,40 @@ def _voltage(sequence: Sequence, window: WindowMeasurements) -> float:
 
 def _reactive_series(sequence: Sequence, evidence: Evidence) -> Samples:
     current = evidence.current_positive_pu if sequence is POSITIVE else evidence.current_negative_pu
-    return current.imag
+    return current.reactive
 
 
-def _reactive_before(sequence: Sequence, evidence: Evidence) -> float:
+def reactive_before(sequence: Sequence, evidence: Evidence) -> float:
+    """Mean reactive current of a sequence in the window before the sag (pu).
+
+    Raises
+    ------
+    MeasurementError
+        When it cannot be measured.
+    """
     before = evidence.before()
     if _voltage(sequence, before) < LEAST_VOLTAGE_PU:
         return 0.0  # without voltage there is no reactive current
     inside = evidence.between(before.start_s, before.end_s)
-    current = require_finite(_reactive_series(sequence, evidence)[inside], "the current", evidence.t_s[inside])
-    return float(current.mean())
+    current = _reactive_series(sequence, evidence)[inside]
+    return float(require_finite(current, "the reactive current", evidence.t_s[inside]).mean())
 
 
-def _additional(sequence: Sequence, evidence: Evidence, window: WindowMeasurements) -> tuple[Samples, Samples]:
-    """Instants of a window (s) and the reactive current there less its mean before the sag (pu)."""
-    inside = evidence.between(window.start_s, window.end_s)
+def additional_current(sequence: Sequence, evidence: Evidence, span: Span) -> tuple[Samples, Samples]:
+    """Instants of a span (s), both ends included, and the reactive current there less its mean before the sag (pu).
+
+    Raises
+    ------
+    MeasurementError
+        When one of them cannot be measured.
+    """
+    inside = evidence.between(*span)
     t_s = evidence.t_s[inside]
-    current = require_finite(_reactive_series(sequence, evidence)[inside], "the current", t_s)
-    return t_s, current - _reactive_before(sequence, evidence)
+    current = require_finite(_reactive_series(sequence, evidence)[inside], "the reactive current", t_s)
+    return t_s, current - reactive_before(sequence, evidence)
 
 
-def _band(asked: _Asked, requirement: ReactiveCurrent, is_event: bool) -> _Band:
+def _band(asked: _Asked, requirement: ReactiveCurrent, event: bool) -> _Band:
     """Around the demand, from tolerance to tolerance; ``tolerance_plus_pu`` is on the side of more support.
 
     Above the threshold of detection there is no fault and nothing is demanded (NTS 631, 5.11.2.2.4: its windows count
@@ -144,10 +157,10 @@ def _band(asked: _Asked, requirement: ReactiveCurrent, is_event: bool) -> _Band:
     if asked.delta_u_pu < 0:
         below, above = above, below
     demand = asked.clipped_pu
-    if is_event:
-        words = f"{demand:+.3f} pu demanded as the voltage fell by {asked.delta_u_pu:+.3f} pu"
-        return _Band(demand - below, demand + above, words)
-    words = f"no voltage event, so nothing is demanded and {demand:+.3f} pu allowed"
+    words = f"{demand:+.3f} pu for a change of the voltage by {asked.delta_u_pu:+.3f} pu"
+    if event:
+        return _Band(demand - below, demand + above, f"demanded are {words}")
+    words = f"without a voltage event nothing is demanded, allowed are {words}"
     return _Band(min(demand, 0.0) - below, max(demand, 0.0) + above, words)
 
 
@@ -172,13 +185,19 @@ def _asked(sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence,
 def _unclipped(
     sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence, window: WindowMeasurements
 ) -> tuple[float, float, float]:
-    """Fall of the voltage, reactive current before the sag, and K f(delta u) (pu)."""
+    """Change of the voltage, reactive current before the sag, and K f(delta u) (pu)."""
     from_nominal = requirement.reference.value == "nominal"
     reference = sequence.nominal_pu if from_nominal else _voltage(sequence, evidence.before())
-    delta_u = reference - _voltage(sequence, window)
+    change = reference - _voltage(sequence, window)
+    delta_u = change if sequence is POSITIVE else -change
     k = evidence.k_factor or requirement.k.value
     demand = k * beyond_dead_band(delta_u, requirement.dead_band_pu.value, requirement.dead_band_mode.value)
-    return delta_u, _reactive_before(sequence, evidence), demand
+    return delta_u, reactive_before(sequence, evidence), demand
+
+
+def is_event(evidence: Evidence, v_positive_pu: float) -> bool:
+    """Whether a V+ (pu) is a sag or a swell by the profile's thresholds; without them, every test is one."""
+    return evidence.detection is None or evidence.detection.is_event(v_positive_pu)
 
 
 def beyond_dead_band(delta_u_pu: float, dead_band_pu: float, mode: DeadBandMode) -> float:

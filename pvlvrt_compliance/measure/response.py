@@ -57,8 +57,8 @@ def step_response(t_s: Samples, x: Samples, event_s: float, initial: float, fina
     if band.short + band.beyond <= 0:
         raise MeasurementError("the tolerance band has no width")
     y = (y - initial) / change
-    reaction, response = _first_reached(t, y, 0.1), _first_reached(t, y, 0.9)
-    settled = _last_entry(t, y, 1 - band.short, 1 + band.beyond)
+    reaction, response = first_reached(t, y, 0.1), first_reached(t, y, 0.9)
+    settled = last_entry(t, y, 1 - band.short, 1 + band.beyond)
     return StepResponse(
         reaction_s=_since(event_s, reaction),
         rise_s=None if reaction is None or response is None else response - reaction,
@@ -81,12 +81,14 @@ def _since(event_s: float, t_s: float | None) -> float | None:
     return None if t_s is None else t_s - event_s
 
 
-def _first_reached(t: Samples, y: Samples, level: float) -> float | None:
+def first_reached(t: Samples, y: Samples, level: float) -> float | None:
+    """First instant (s) at which a series is at or above a level, None when it never is; shapes (n,)."""
     reached = y >= level
     return _crossing(t, y, int(reached.argmax()), level) if reached.any() else None
 
 
-def _last_entry(t: Samples, y: Samples, low: float, high: float) -> float | None:
+def last_entry(t: Samples, y: Samples, low: float, high: float) -> float | None:
+    """Instant (s) from which a series stays between two levels, None when it ends outside; shapes (n,)."""
     outside: NDArray[np.intp] = np.flatnonzero((y < low) | (y > high))
     if not len(outside):
         return float(t[0])

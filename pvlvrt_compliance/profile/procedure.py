@@ -61,6 +61,11 @@ class Detection(Frozen):
             raise ValueError("leave_below_pu: must not be above enter_above_pu")
         return self
 
+    def is_event(self, v_positive_pu: float) -> bool:
+        """Whether a sag or a swell begins at a V+ (pu)."""
+        swell = self.enter_above_pu
+        return v_positive_pu < self.enter_below_pu.value or (swell is not None and v_positive_pu > swell.value)
+
 
 class Procedure(Frozen):
     """What all tests of a profile share."""
