@@ -18,12 +18,12 @@ KIND = "consumption"
 
 
 def check_consumption(requirement: Consumption, evidence: Evidence) -> Check:
-    """Judge power and energy taken from the grid by zone; reports the part with the least margin relative to its limit.
+    """Judge power and energy taken from the grid by zone; reports the one with the least margin relative to its limit.
 
-    Powers and the reactive current are one-cycle means and phasors of cycles that lie wholly in the zone. An energy adds
-    up what the zone takes cycle by cycle from its beginning, the last one cut where the zone ends; what one cycle feeds
-    does not make up for what another takes. A fault is unbalanced when its mean V- in the during-window, or without one
-    its highest one-cycle V-, reaches ``unbalanced_from_pu``.
+    Powers and the reactive current are one-cycle means and phasors of cycles that lie wholly in the zone. An energy
+    adds up what is taken cycle by cycle from the zone's beginning, the last cycle cut where the zone ends; what one
+    cycle feeds does not make up for what another takes. A fault is unbalanced when its mean V- in the during-window, or
+    without one its highest one-cycle V-, reaches ``unbalanced_from_pu``.
 
     Raises
     ------

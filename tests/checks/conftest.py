@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -10,11 +10,19 @@ import pytest
 from pvlvrt_compliance.checks.evaluate import evaluate
 from pvlvrt_compliance.checks.results import Check, TestResult
 from pvlvrt_compliance.profile import Profile, TestCase, load_profile
+from pvlvrt_compliance.profile.procedure import Detection
+from pvlvrt_compliance.profile.provenance import Number
+from pvlvrt_compliance.profile.requirements import Requirement, Requirements
 from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.space_vectors import fortescue, phases
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Segment, Waveforms
 
 DT_S = 40.9568e-6
+
+
+Level = float | Callable[[np.ndarray], np.ndarray]
+"""A number, or a function of time."""
 
 
 @dataclass
@@ -22,19 +30,25 @@ class Bench:
     """A record to be judged; by default a flawless inverter's through the sag of the test.
 
     Currents are balanced; the powers asked for come out as means at the terminals. Times count from the start of the
-    sag, ``recovers_after_s`` and the argument of ``p_after_kw`` from clearing.
+    sag, ``recovers_after_s`` and the arguments of ``p_after_kw`` and ``q_after_kvar`` from clearing.
+    ``negative_reactive_pu`` is added during the sag, positive where it lowers V-. ``healthy_pu`` scales the voltage
+    outside of the sag.
     """
 
     profile: Profile
     test: TestCase
     available_power_w: float = 500e3
     p_before_kw: float = 500.0
-    p_sag_kw: float = 0.0
-    q_sag_kvar: float = 0.0
-    p_after_kw: float | Callable[[np.ndarray], np.ndarray] = 500.0
+    q_before_kvar: float = 0.0
+    p_sag_kw: Level = 0.0
+    q_sag_kvar: Level = 0.0
+    negative_reactive_pu: float = 0.0
+    p_after_kw: Level = 500.0
+    q_after_kvar: Level = 0.0
     recovers_after_s: float = 0.0
     sag: Sag | None = None
     no_load_sag: Sag | None = None
+    healthy_pu: float = 1.0
     dc_ripple_percent: float = 0.0
     disconnected_after_s: float | None = None
     blocked_after_s: float | None = None
@@ -79,25 +93,65 @@ class Bench:
     def _voltage(self, sag: Sag, in_sag: np.ndarray) -> list[np.ndarray]:
         healthy = Sag(depth=0).phasors_pu()
         peak = self.nominal.phase_voltage_peak_v
-        return [peak * np.where(in_sag, s, h) for s, h in zip(sag.phasors_pu(), healthy, strict=True)]
+        return [peak * np.where(in_sag, s, self.healthy_pu * h) for s, h in zip(sag.phasors_pu(), healthy, strict=True)]
 
     def _current(self, t: np.ndarray, u: list[np.ndarray], in_sag: np.ndarray) -> list[np.ndarray]:
         """Balanced positive-sequence phasors that carry the powers asked for: i = (2/3) conj(S / u+) a phase."""
-        scenario = self.test.scenario
-        rotation = np.exp(2j * np.pi / 3)
-        positive = (u[0] + rotation * u[1] + rotation.conjugate() * u[2]) / 3
-        after = self.p_after_kw(t - scenario.clear_s) if callable(self.p_after_kw) else self.p_after_kw
-        p = np.where(t < scenario.start_s, self.p_before_kw, after)
-        p = np.where(in_sag, self.p_sag_kw, p)
-        p = np.where((t >= scenario.clear_s) & (t < scenario.clear_s + self.recovers_after_s), 0.0, p)
-        power = 1e3 * (p + 1j * np.where(in_sag, self.q_sag_kvar, 0.0))
+        positive, negative, _ = fortescue(*u)
+        p, q = self._powers(t, in_sag)
         dead = np.abs(positive) < 1e-6
-        current = np.where(dead, 0, 2 / 3 * np.conj(power / np.where(dead, 1, positive)))
-        return [current, current * rotation.conjugate(), current * rotation]
+        current = np.where(dead, 0, 2 / 3 * np.conj(1e3 * (p + 1j * q) / np.where(dead, 1, positive)))
+        balanced = np.abs(negative) < 1e-6
+        along = np.where(balanced, 0, negative / np.where(balanced, 1, np.abs(negative)))
+        support = in_sag * self.negative_reactive_pu * self.nominal.phase_current_peak_a
+        return list(phases(current, 1j * support * along, 0))
+
+    def _powers(self, t: np.ndarray, in_sag: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        scenario = self.test.scenario
+        since_clearing = t - scenario.clear_s
+        p = np.where(t < scenario.start_s, self.p_before_kw, at(self.p_after_kw, since_clearing))
+        p = np.where(in_sag, at(self.p_sag_kw, t - scenario.start_s), p)
+        p = np.where((since_clearing >= 0) & (since_clearing < self.recovers_after_s), 0.0, p)
+        q = np.where(t < scenario.start_s, self.q_before_kvar, at(self.q_after_kvar, since_clearing))
+        return p, np.where(in_sag, at(self.q_sag_kvar, t - scenario.start_s), q)
 
     def _feeding(self, t: np.ndarray) -> np.ndarray:
         stops = [s for s in (self.disconnected_after_s, self.blocked_after_s) if s is not None]
         return (t < self.test.scenario.start_s + min(stops, default=np.inf)).astype(float)
+
+
+def at(level: Level, t: np.ndarray) -> np.ndarray:
+    """Values of a level at some instants."""
+    return np.asarray(level(t) if callable(level) else level)
+
+
+def chosen(value: Any, name: str = "value") -> dict[str, Any]:
+    """A number, or whatever stands under ``name``, with a mark."""
+    return {name: value, "confidence": "chosen", "source": "the test"}
+
+
+def marked(kind: str, **numbers: Any) -> Requirement:
+    """A requirement of a kind; numbers and words get a mark, tables and models are taken as they are."""
+    annotation = Requirements.model_fields[kind].annotation
+    model = next(t for t in get_args(annotation) if t is not type(None))
+    plain = {name: x if isinstance(x, dict) else chosen(x) for name, x in numbers.items()}
+    return model.model_validate({"clause": "a clause", "source": "the test"} | plain)
+
+
+@pytest.fixture
+def demanding(iec: Profile) -> Callable[..., Profile]:
+    """Make a profile that demands these kinds only, each given by its numbers.
+
+    ``detection`` gives the numbers of the thresholds, ``tolerance_pu`` how far the sag may miss what was asked for.
+    """
+
+    def make(detection: dict[str, float] | None = None, tolerance_pu: float = 0.05, **kinds: dict[str, Any]) -> Profile:
+        requirements = Requirements(**{kind: marked(kind, **numbers) for kind, numbers in kinds.items()})
+        conditions = iec.conditions.model_copy(update={"no_load_tolerance_pu": Number(**chosen(tolerance_pu))})
+        thresholds = detection and Detection(**{name: Number(**chosen(x)) for name, x in detection.items()})
+        return iec.model_copy(update={"requirements": requirements, "conditions": conditions, "detection": thresholds})
+
+    return make
 
 
 @pytest.fixture(scope="session")
