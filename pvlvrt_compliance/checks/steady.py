@@ -5,9 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pvlvrt_compliance.checks.evidence import Evidence, require_finite
-from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.measure.groups import group_windows
-from pvlvrt_compliance.measure.quantities import WindowMeasurements
+from pvlvrt_compliance.measure.groups import window_cycles
 from pvlvrt_compliance.waveforms.container import Samples
 
 
@@ -22,29 +20,25 @@ class SteadyWindow(NamedTuple):
 
 
 def steady_currents(evidence: Evidence) -> list[SteadyWindow]:
-    """Windows before the sag and, where the record is long enough for one, at its end; the last cycles of each.
+    """Windows that end with the one before the sag and, where the record is long enough, with the one at its end.
+
+    They are counted in cycles of the measured frequency from their end backwards: a window of 0.2 s holds eleven cycles
+    of 59.8 Hz and a part of the twelfth.
 
     Raises
     ------
     MeasurementError
-        When the window before the sag holds fewer cycles, or a current is missing or not finite.
+        When the record before the sag holds fewer cycles, or a current is missing or not finite.
     """
     before, after = evidence.before(), evidence.measurements.after
-    windows = [_last_cycles(evidence, before)]
-    return windows if after is None else [*windows, _last_cycles(evidence, after)]
+    windows = [_last_cycles(evidence, before.end_s)]
+    return windows if after is None else [*windows, _last_cycles(evidence, after.end_s)]
 
 
-def _last_cycles(evidence: Evidence, window: WindowMeasurements) -> SteadyWindow:
+def _last_cycles(evidence: Evidence, end_s: float) -> SteadyWindow:
     nominal = evidence.nominal
-    segment = evidence.waveforms.window(window.start_s, window.end_s)
-    stretches = group_windows(len(segment), segment.dt_s, evidence.frequency_hz, nominal.frequency_hz)
-    if not stretches:
-        raise MeasurementError(
-            f"the window {window.start_s:.3f} s to {window.end_s:.3f} s is shorter than the cycles that harmonics are "
-            "grouped over"
-        )
-    length = stretches[0].stop
-    last = segment.slice(segment.t_s[-length] - segment.dt_s / 2, window.end_s)
-    current = np.stack(last.three_phase("i")) / (nominal.phase_current_peak_a / np.sqrt(2))
-    require_finite(current, "the current", last.t_s)
-    return SteadyWindow(last.t0_s, window.end_s, last.dt_s, current)
+    start_s = end_s - window_cycles(nominal.frequency_hz) / evidence.frequency_hz
+    segment = evidence.waveforms.window(start_s, end_s)
+    current = np.stack(segment.three_phase("i")) / (nominal.phase_current_peak_a / np.sqrt(2))
+    require_finite(current, "the current", segment.t_s)
+    return SteadyWindow(start_s, end_s, segment.dt_s, current)
