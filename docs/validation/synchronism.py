@@ -204,7 +204,8 @@ the grid's impedance, V the voltage at the PCC, all in pu.
 Without a sag a grid carries at unity power factor at most P = E^2 / (2 (|Z| - R)), and V follows from E^2 = (V -
 R P/V)^2 + (X P/V)^2. With X/R = 10 nominal power takes V below 0.85 pu at an SCR of 1.90: the detector flags a fault
 that is none, fault mode cuts the power, and it stays there (SCR 1.5). The tool then says `not_evaluated`: the power
-before the sag is not the one meant. At an SCR of 1 the mode goes to and fro and the FLL runs to its guard, sag or no sag.
+before the sag is not the one meant. At an SCR of 1 the mode goes to and fro and the FLL runs
+to its guard, whatever the sag.
 
 In a deep three-phase sag the paper's control feeds 1 pu of reactive current and nothing else. What that current loses
 in the grid's resistance has to come from the source, which gives at most E times 1 pu: there is a state of rest only
