@@ -237,6 +237,8 @@ class Twin:
             raise ValueError("the twin writes contiguous float64 samples")
         if a.hardware is not None:
             raise ValueError("the twin has ideal hardware only")
+        if a.controller_params.precision.double is None:
+            raise ValueError("the twin computes in double precision only")
         packed = [_packed(x) for x in (a.plant, a.controller, a.plant_params, a.tables, a.controller_params)]
         start, control, params, tables, control_params = map(ctypes.byref, packed)
         m, first, count = _member(complex(a.m)), ctypes.c_int64(a.first), ctypes.c_int64(len(a.samples))

@@ -10,9 +10,10 @@ import types
 from collections.abc import Callable
 from functools import cache, partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
+import numpy as np
 import platformdirs
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -21,6 +22,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 _njit: Any = partial(numba.njit, error_model="numpy")
 
 _PACKAGE = Path(__file__).resolve().parent
+_blocks: set[types.FunctionType] = set()  # the Python of every kernel
+
 _KERNEL_FOLDERS = ("control", "plant", "simulation")
 _KERNEL_FILES = ("kernel.py", "space_vectors.py", "vectors.py", "sogi.py")
 
@@ -44,10 +47,11 @@ def cache_folder() -> Path:
 
 
 def kernel(function: F) -> F:
-    """Compile a block: inlined into whatever calls it, never fast-math, float64.
+    """Compile a block: inlined into whatever calls it, never fast-math, float64 (float32, see `in_single`).
 
     Only compiled code can call it (from Python, see `plain`): wrappers for Python would double the time to compile.
     """
+    _blocks.add(cast(types.FunctionType, function))
     compiled: F = _njit(function, forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
     return compiled
 
@@ -62,10 +66,68 @@ def plain(function: F) -> F:
 def in_python(function: F) -> F:
     """The Python behind a kernel and behind every kernel that it calls: to look at a block outside compiled code."""
     source: Any = plain(function)
-    named = {name: source.__globals__.get(name) for name in source.__code__.co_names}
-    called = {name: in_python(block) for name, block in named.items() if hasattr(block, "py_func")}
+    called = {name: in_python(block) for name, block in _named_in(source).items() if is_kernel(block)}
     python: Any = types.FunctionType(source.__code__, {**source.__globals__, **called}, source.__name__)
     return python  # type: ignore[no-any-return]
+
+
+def is_kernel(x: Any) -> bool:
+    """Whether something is a block that `kernel` has compiled, or will."""
+    return isinstance(plain(x), types.FunctionType) and plain(x) in _blocks
+
+
+def _named_in(source: Any) -> dict[str, Any]:
+    """Globals that a function names."""
+    return {name: source.__globals__[name] for name in source.__code__.co_names if name in source.__globals__}
+
+
+def single(x: Any) -> Any:
+    """The same in single precision: numbers, complex arrays, and tuples of them; what is none or whole stays."""
+    if isinstance(x, float):
+        return np.float32(x)
+    if isinstance(x, complex):
+        return np.complex64(x)
+    if isinstance(x, np.ndarray) and np.iscomplexobj(x):
+        return x.astype(np.complex64)
+    if isinstance(x, tuple):
+        parts = [single(part) for part in x]
+        return type(x)(*parts) if hasattr(x, "_fields") else tuple(parts)
+    return x
+
+
+def _with_single(source: Any, called: Callable[[Any], Any], builtins: dict[str, Any]) -> Any:
+    """Copy of a function whose constants are single, and whose blocks are what ``called`` makes of them."""
+    named = {name: called(x) if is_kernel(x) else single(x) for name, x in _named_in(source).items()}
+    code = source.__code__.replace(co_consts=single(source.__code__.co_consts))
+    return types.FunctionType(code, {**source.__globals__, **named, **builtins}, source.__name__)
+
+
+@cache
+def in_single(function: F) -> F:
+    """Kernel of the same source, and of those that it calls, in which every constant is a number of 32 bits.
+
+    Called with float32 and complex64 it computes with nothing else; with float64 it is not meant to be called. The
+    source has to keep whole numbers out of its arithmetic (``5.0 * x``, ``float(n)``): numba makes float64 of them.
+    """
+    config: Any = numba.config
+    if config.DISABLE_JIT:
+        python: F = single_in_python(function)
+        return python
+    compiled: F = kernel(_with_single(plain(function), in_single, {"float": np.float32}))
+    return compiled
+
+
+@cache
+def single_in_python(function: F) -> F:
+    """The Python behind what `in_single` gives, on numpy's scalars."""
+    # Those of Python's own functions that give double precision, whatever they are given.
+    builtins = {"float": np.float32, "complex": _single_complex, "math": np}
+    python: F = _with_single(plain(function), single_in_python, builtins)
+    return python
+
+
+def _single_complex(real: Any, imag: Any) -> np.complex64:
+    return np.complex64(complex(real, imag))
 
 
 def cached_kernel(function: F) -> F:

@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 SQRT2_3 = math.sqrt(2 / 3)
 SQRT3_2 = math.sqrt(3) / 2
 
+PI = math.pi  # here for the kernels, which change the precision of constants that they name
+
 ROTATION_120 = complex(-0.5, SQRT3_2)
 """The operator a = exp(j 2 pi / 3)."""
 

@@ -9,10 +9,10 @@ import numba
 import pytest
 
 from pvlvrt_compliance import kernel as kernel_module
-from pvlvrt_compliance.control import controller, synchronisation
+from pvlvrt_compliance.control import controller, precision, synchronisation
 from pvlvrt_compliance.control.dc_voltage_regulator import DcVoltageRegulatorState
 from pvlvrt_compliance.control.lvrt import LvrtOrder, lvrt_step
-from pvlvrt_compliance.kernel import kernel, plain
+from pvlvrt_compliance.kernel import in_single, kernel, plain
 from pvlvrt_compliance.plant import plant
 from pvlvrt_compliance.plant.plant import PlantState, advance, plant_step
 from pvlvrt_compliance.plant.protection import NO_TRIP, UNDERVOLTAGE
@@ -30,6 +30,8 @@ def _rewired(modules: Mapping[str, Any], replaced: dict[str, Any]) -> dict[str, 
             own = isinstance(source, types.FunctionType) and source.__module__ == module.__name__
             if own and name not in {*replaced, "run"} and set(source.__code__.co_names) & set(replaced):
                 replaced[name] = kernel(_with_globals(source, replaced))
+        if module is controller and "controller_step" in replaced:
+            replaced["single_step"] = in_single(replaced["controller_step"])
     return replaced
 
 
@@ -46,7 +48,7 @@ def rebuild_loop() -> Callable[..., Loop]:
     """
 
     def rebuild(**replacements: Callable[..., Any]) -> Loop:
-        modules = {module.__name__: module for module in (plant, synchronisation, controller, loop)}
+        modules = {module.__name__: module for module in (plant, synchronisation, controller, precision, loop)}
         unknown = {name for name in replacements if not any(hasattr(module, name) for module in modules.values())}
         assert not unknown, f"no block of the loop is named {unknown}"
         blocks = {name: block if hasattr(block, "py_func") else kernel(block) for name, block in replacements.items()}

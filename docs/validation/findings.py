@@ -12,13 +12,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from evidence import Plot, Row, Section, shown
-from pvlvrt_compliance.scenario.parameters import Parameters
+from pvlvrt_compliance.scenario.parameters import Parameters, parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.waveforms import Segment
 from records import NOMINAL, record
 
 _START = ("--profile", "spain-q-curve")
+_CHECKOUT = Path(__file__).resolve().parents[2]
 
 
 class Finding(NamedTuple):
@@ -27,11 +28,17 @@ class Finding(NamedTuple):
     scenario: Scenario
     options: tuple[str, ...]
     current_limit: str  # status of that check
+    settings: tuple[str, ...] = ()  # what ``--set`` changes
+
+    @property
+    def arguments(self) -> tuple[str, ...]:
+        """What the program is given."""
+        return (*_START, *self.options, *(part for setting in self.settings for part in ("--set", setting)))
 
     @property
     def command(self) -> str:
         """Command to type."""
-        return " ".join(("pvlvrt-check", *_START, *self.options))
+        return " ".join(("pvlvrt-check", *self.arguments))
 
 
 BLIND_SPOT = Finding(
@@ -51,18 +58,24 @@ EXCURSION = Finding(Scenario(sag=Sag(depth=0.9), duration_s=0.309), ("--sag", "9
 @cache
 def samples_of(finding: Finding) -> Segment:
     """Record of the run that the command makes."""
-    return record(finding.scenario, Parameters())
+    return record(finding.scenario, parameters_from(finding.settings))
 
 
 @cache
-def checks_of(finding: Finding) -> dict[str, dict[str, Any]]:
-    """Run the command; its checks by name."""
+def report_of(finding: Finding) -> dict[str, Any]:
+    """Run the command from the checkout's folder; the one test of its report."""
     with tempfile.TemporaryDirectory() as folder:
         program = [sys.executable, "-m", "pvlvrt_compliance.cli.main"]
-        command = [*program, *_START, *finding.options, "--output", folder]
-        subprocess.run(command, capture_output=True, check=False)
+        command = [*program, *finding.arguments, "--output", folder]
+        subprocess.run(command, capture_output=True, check=False, cwd=_CHECKOUT)
         results = json.loads((Path(folder) / "results.json").read_text(encoding="utf-8"))
-    return {check["check"]: check for check in results["tests"][0]["checks"]}
+    found: dict[str, Any] = results["tests"][0]
+    return found
+
+
+def checks_of(finding: Finding) -> dict[str, dict[str, Any]]:
+    """Checks in the report of the command, by name."""
+    return {check["check"]: check for check in report_of(finding)["checks"]}
 
 
 def settled(finding: Finding) -> Segment:
@@ -127,7 +140,8 @@ def _current(part: Segment) -> Any:
     return np.abs(part.three_phase("i")).max(axis=0) / NOMINAL.phase_current_peak_a
 
 
-def _command(finding: Finding) -> str:
+def shell(finding: Finding) -> str:
+    """Command to type, as Markdown that follows a text."""
     return f"\n\n```sh\n{finding.command}\n```"
 
 
@@ -150,7 +164,7 @@ def blind_spot() -> Section:
     )
     return Section(
         "Finding: the detector's blind spot",
-        _BLIND_SPOT + _command(BLIND_SPOT),
+        _BLIND_SPOT + shell(BLIND_SPOT),
         rows,
         (Plot("blind-spot", "Dashed: the threshold of the detector.", draw),),
     )
@@ -165,7 +179,7 @@ def small_sag() -> Section:
     draw = traces(SMALL_SAG, {"largest phase current (pu)": _current}, "pu", 1.0)
     return Section(
         "Finding: no current limit above 0.85 pu",
-        _SMALL_SAG + _command(SMALL_SAG),
+        _SMALL_SAG + shell(SMALL_SAG),
         rows,
         (Plot("small-sag", "Dashed: nominal current.", draw),),
     )
@@ -181,7 +195,7 @@ def toggling() -> Section:
     }
     return Section(
         "Finding: toggling in weak grids",
-        _TOGGLING + _command(TOGGLING),
+        _TOGGLING + shell(TOGGLING),
         rows,
         (Plot("toggling", "Dashed: the threshold of the detector.", traces(TOGGLING, lines, "pu", 0.85)),),
     )
@@ -200,7 +214,7 @@ def excursion() -> Section:
     draw = traces(EXCURSION, {"frequency estimate (Hz)": lambda x: x["frequency_estimate_hz"]}, "Hz", 50.0)
     return Section(
         "Finding: excursion of the FLL",
-        _EXCURSION + _command(EXCURSION),
+        _EXCURSION + shell(EXCURSION),
         rows,
         (Plot("excursion", "Three-phase 90 %; the grid stays at 50 Hz.", draw),),
     )

@@ -11,11 +11,13 @@ from typing import Any
 import blocks
 import circuit
 import closed_forms
+import distorted_grid
 import findings
 import integrator
 import invariants
 import photovoltaics
 import switched_circuit
+import synchronism
 from evidence import Plot, Section
 from page import FIGURES, differences, page
 
@@ -33,7 +35,9 @@ def sections() -> tuple[Section, ...]:
         photovoltaics.section(),
         invariants.section(),
         closed_forms.section(),
+        distorted_grid.section(),
         *findings.sections(),
+        synchronism.section(),
     )
 
 

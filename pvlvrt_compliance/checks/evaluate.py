@@ -56,10 +56,15 @@ def errored(profile: Profile, test: TestCase, reason: str) -> TestResult:
     return _result(profile, test, checks, Measurements(), 0.0)
 
 
-def summarise(profile: Profile, tests: Iterable[TestCase]) -> ProfileSummary:
-    """The profile as a report on these tests shows it, with what is not verified."""
-    notes = profile.unverified({test.id for test in tests})
-    return ProfileSummary(id=profile.id, title=profile.title, digest=profile.digest, notes=notes)
+def summarise(profile: Profile, tests: Iterable[TestCase], left_out: Iterable[TestCase] = ()) -> ProfileSummary:
+    """The profile as a report on these tests shows it, with what is not verified and what was left out."""
+    return ProfileSummary(
+        id=profile.id,
+        title=profile.title,
+        digest=profile.digest,
+        notes=profile.unverified({test.id for test in tests}),
+        left_out=tuple(test.id for test in left_out),
+    )
 
 
 def collect(

@@ -65,6 +65,11 @@ class TestResult(_Frozen):
     confidence: str = Field(default="", description="mark of the test procedure's numbers")
     duration_s: FiniteFloat = Field(default=0.0, description="length of the record")
 
+    @property
+    def key(self) -> str:
+        """Name that no other test of a run has: profile and id."""
+        return f"{self.profile}.{self.id}" if self.profile else self.id
+
 
 class ProfileSummary(_Frozen):
     """The profile that was judged against, as a report shows it."""
@@ -73,6 +78,7 @@ class ProfileSummary(_Frozen):
     title: str
     digest: str
     notes: tuple[str, ...] = Field(default=(), description="what is not verified, a sentence each")
+    left_out: tuple[str, ...] = Field(default=(), description="long tests that were not asked for, by id")
 
 
 class Results(_Frozen):

@@ -10,14 +10,16 @@ from pvlvrt_compliance.cli.request import Job
 def show_tests(job: Job) -> int:
     """Print the selected tests; nothing is simulated."""
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=0)
-    for heading in ("test", "sag"):
+    several = len(job.profiles) > 1
+    for heading in (*(["profile"] if several else []), "test", "sag"):
         table.add_column(heading, no_wrap=True)
     for heading in ("s", "W/m2", "deg", "Hz"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("confidence", no_wrap=True)
-    for test in job.tests:
+    for profile, test in job.tests:
         scenario = test.scenario
         table.add_row(
+            *([profile.id] if several else []),
             test.id,
             scenario.sag.describe(),
             f"{scenario.duration_s:.3f}",
@@ -28,5 +30,8 @@ def show_tests(job: Job) -> int:
         )
     console = Console()
     console.print(table)
-    console.print(f"{len(job.tests)} test{'' if len(job.tests) == 1 else 's'} of {job.profile.id}", highlight=False)
+    names = ", ".join(profile.id for profile in job.profiles)
+    console.print(f"{len(job.tests)} test{'' if len(job.tests) == 1 else 's'} of {names}", highlight=False)
+    if job.left_out:
+        console.print(f"{len(job.left_out)} more with --include-long", highlight=False)
     return 0

@@ -31,9 +31,12 @@ def _print_version(wanted: bool) -> None:
 
 def check(
     context: typer.Context,
-    profile: Annotated[
-        str, typer.Option("--profile", metavar="NAME|FILE", help="Grid code: a shipped name, or a TOML file.")
-    ] = "",
+    profiles: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--profile", metavar="NAME|FILE", help="Grid code: a known name, a TOML file, or all. Repeatable."
+        ),
+    ] = None,
     sag: Annotated[
         str | None,
         typer.Option(metavar="DEPTH", help="Depth of the sag, 90% or 0.9; 0% is none.", rich_help_panel=_SAG),
@@ -127,6 +130,10 @@ def check(
             "--test", metavar="PATTERN", help="Tests to run, repeatable: --test 'VD3*'", rich_help_panel=_OUTPUT
         ),
     ] = None,
+    include_long: Annotated[
+        bool,
+        typer.Option("--include-long", metavar="", help="Run tests of half an hour, too.", rich_help_panel=_OUTPUT),
+    ] = False,
     list_only: Annotated[
         bool, typer.Option("--list", metavar="", help="Show the selected tests and stop.", rich_help_panel=_OUTPUT)
     ] = False,
@@ -154,7 +161,7 @@ def check(
     from pvlvrt_compliance.cli.request import Request, SagRequest, prepare
 
     request = Request(
-        profile=profile,
+        profiles=tuple(profiles or ()),
         sag=None if sag is None else SagRequest(sag, phases, two_phase, sag_type, duration, point_on_wave, irradiance),
         overrides={
             "frequency_hz": frequency,
@@ -167,6 +174,7 @@ def check(
         assignments=tuple(assignments or ()),
         fidelity=fidelity,
         patterns=tuple(tests or ()),
+        include_long=include_long,
         output=output,
         csv=csv,
         exit_zero=exit_zero,

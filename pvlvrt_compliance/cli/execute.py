@@ -1,6 +1,6 @@
 """Run the tests, show them, write the reports."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from datetime import datetime
 from pathlib import Path
@@ -13,12 +13,15 @@ from pvlvrt_compliance.checks.evaluate import summarise
 from pvlvrt_compliance.checks.results import EXIT_STATUS, Results, TestResult, conclude
 from pvlvrt_compliance.cli.output import RESULTS, WAVEFORMS, OutputFolder
 from pvlvrt_compliance.cli.request import Job, Request
+from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.provenance import CHOSEN
 from pvlvrt_compliance.report import console, html, junit, results_json
+from pvlvrt_compliance.report.decimation import buckets_for
 from pvlvrt_compliance.report.figure import test_figure
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.study.provenance import created_at, provenance
+from pvlvrt_compliance.study.selection import Assignment
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms import Waveforms
 from pvlvrt_compliance.waveforms.comtrade import write_comtrade
@@ -55,27 +58,39 @@ class _Run:
         self.output = output
         self.finished: list[TestResult] = []
         self.figures: dict[str, dict[str, Any]] = {}
+        self.files: dict[Scenario, str] = {}  # names of the waveforms that are written
 
     def simulate(self) -> None:
         """Run every test; waveforms are written and drawn at once, so that they need not be kept."""
         with _progress(len(self.job.tests), self.request.quiet) as advance:
             # The simulator is compiled, or read from its cache, on this import and on the first run.
+            from pvlvrt_compliance.simulation.simulate import simulate
             from pvlvrt_compliance.simulation.translate import nominal_of
             from pvlvrt_compliance.study.run import run_test
+            from pvlvrt_compliance.study.sharing import SharedSimulator, rows_of, shared_together
 
-            for test in self.job.tests:
-                advance(test.id, len(self.finished))
-                result, waveforms = run_test(self.job.profile, test, self.job.parameters)
-                if waveforms is not None:
-                    nominal = nominal_of(self.job.parameters, test.scenario)
-                    result = self._keep(result, waveforms, test.scenario, nominal)
-                self.finished.append(result)
+            simulator = SharedSimulator(simulate, self.job.tests)
+            for row in shared_together(rows_of(self.job.tests)):
+                for profile, test in row:
+                    advance(f"{profile.id} {test.id}", len(self.finished))
+                    result, waveforms = run_test(profile, test, self.job.parameters, simulator)
+                    if waveforms is not None:
+                        nominal = nominal_of(self.job.parameters, test.scenario)
+                        result = self._keep(result, waveforms, Assignment(profile, test), nominal)
+                    self.finished.append(result)
 
     def results(self) -> Results:
-        """What is finished, as one result object."""
+        """What is finished, as one result object, in the order of the profiles."""
         job = self.job
-        origin = provenance(job.profile, job.parameters, self.request.command, self.created)
-        return conclude(self.finished, [summarise(job.profile, job.tests)], origin)
+        origin = provenance(job.profiles, job.parameters, self.request.command, self.created)
+        summaries = [
+            summarise(profile, *(_of(profile, items) for items in (job.tests, job.left_out)))
+            for profile in job.profiles
+        ]
+        place = {(profile.id, test.id): index for index, (profile, test) in enumerate(job.tests)}
+        last = len(place)  # runs that a repetition rule asked for besides
+        finished = sorted(self.finished, key=lambda test: place.get((test.profile, test.id), last))
+        return conclude(finished, summaries, origin)
 
     def write_reports(self) -> Results:
         """Stage all reports."""
@@ -97,23 +112,33 @@ class _Run:
         place = self.output.keep_interrupted()
         log.print(f"interrupted; {count} were finished and are kept in {place}", soft_wrap=not log.is_terminal)
 
-    def _keep(self, result: TestResult, waveforms: Waveforms, scenario: Scenario, nominal: Nominal) -> TestResult:
-        stem = self.output.waveforms / result.id
+    def _keep(self, result: TestResult, waveforms: Waveforms, item: Assignment, nominal: Nominal) -> TestResult:
+        profile, scenario = item.profile, item.test.scenario
+        if scenario not in self.files:
+            self.files[scenario] = result.key if len(self.job.profiles) > 1 else result.id
+            self._write(waveforms, self.files[scenario], item, nominal)
+        envelope = profile.envelope
+        points = envelope.points if envelope and envelope.voltage_quantity == "positive_sequence" else None
+        buckets = buckets_for(len(self.job.tests))
+        self.figures[result.key] = test_figure(waveforms, result, nominal, points, _limits(profile), buckets)
+        return result.model_copy(update={"waveforms": f"{WAVEFORMS}/{self.files[scenario]}.cfg"})
+
+    def _write(self, waveforms: Waveforms, name: str, item: Assignment, nominal: Nominal) -> None:
         write_comtrade(
             waveforms,
-            stem,
-            station=self.job.profile.id,
+            self.output.waveforms / name,
+            station=item.profile.id,
             device="pvlvrt-check",
             frequency_hz=nominal.frequency_hz,
             start=self.created,
-            trigger_s=scenario.start_s,
+            trigger_s=item.test.scenario.start_s,
         )
         if self.request.csv:
-            write_csv(waveforms, stem.with_name(f"{result.id}.csv"))
-        profile = self.job.profile
-        envelope = profile.envelope.points if profile.envelope else None
-        self.figures[result.id] = test_figure(waveforms, result, nominal, envelope, _limits(profile))
-        return result.model_copy(update={"waveforms": f"{WAVEFORMS}/{result.id}.cfg"})
+            write_csv(waveforms, self.output.waveforms / f"{name}.csv")
+
+
+def _of(profile: Profile, items: Iterable[Assignment]) -> list[TestCase]:
+    return [item.test for item in items if item.profile is profile]
 
 
 def _limits(profile: Profile) -> dict[str, float]:
@@ -149,6 +174,9 @@ def _show(results: Results, request: Request) -> None:
     screen.print(console.render(results))
     for profile in results.profiles:
         _show_doubts(screen, profile.notes)
+        if profile.left_out:
+            left_out = f"Left out: {', '.join(profile.left_out)} of {profile.id} (long; --include-long runs them)"
+            screen.print(left_out, soft_wrap=not screen.is_terminal)
     screen.print(f"Report: {Path(request.output) / 'report.html'}", soft_wrap=True)
 
 

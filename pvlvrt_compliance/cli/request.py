@@ -1,19 +1,18 @@
 """What the user asked for, checked and turned into tests and parameters. Nothing is written or simulated here."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, get_args
 
 from pydantic import ValidationError
 
 from pvlvrt_compliance.errors import UsageError, did_you_mean
 from pvlvrt_compliance.profile.loading import known_profiles, load_profile
-from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.scenario.files import load_events
 from pvlvrt_compliance.scenario.parameters import Parameters, parameters_from
 from pvlvrt_compliance.scenario.sag import PAIRS, Sag, Type
-from pvlvrt_compliance.study.selection import select
+from pvlvrt_compliance.study.selection import Assignment, keep_short, select
 from pvlvrt_compliance.units import parse_duration, parse_fraction
 
 # Options by the field of the scenario that they set: a message names what the user has typed.
@@ -28,6 +27,9 @@ _OPTIONS = {
     "point_on_wave_deg": "--point-on-wave",
     "duration_s": "--duration",
 }
+ALL = "all"
+"""In place of a name: every profile that ships or is found."""
+
 _PHASES = ("abc", "a", "b", "c", *PAIRS)
 _TYPES = get_args(Type)
 
@@ -47,13 +49,14 @@ class SagRequest(NamedTuple):
 class Request(NamedTuple):
     """The whole command line."""
 
-    profile: str
+    profiles: tuple[str, ...]
     sag: SagRequest | None
     overrides: dict[str, float | str | None]
     events: str | None
     assignments: tuple[str, ...]
     fidelity: str | None
     patterns: tuple[str, ...]
+    include_long: bool
     output: str
     csv: bool
     exit_zero: bool
@@ -64,8 +67,9 @@ class Request(NamedTuple):
 class Job(NamedTuple):
     """What is to be run."""
 
-    profile: Profile
-    tests: tuple[TestCase, ...]
+    profiles: tuple[Profile, ...]
+    tests: tuple[Assignment, ...]
+    left_out: tuple[Assignment, ...]  # long tests that nobody asked for
     parameters: Parameters
 
 
@@ -75,20 +79,34 @@ def prepare(request: Request) -> Job:
     Raises
     ------
     PvlvrtError
-        When the profile, an option or the selection cannot be used.
+        When a profile, an option or the selection cannot be used.
     """
-    if not request.profile:
-        raise UsageError(f"--profile is missing; known profiles: {', '.join(known_profiles())} (--help has an example)")
-    profile = load_profile(request.profile)
+    profiles = _profiles(request.profiles)
     parameters = _parameters(request)
     try:
-        tests = _tests(profile, request)
+        found = _tests(profiles, request)
     except UsageError as error:
         field, colon, rest = str(error).partition(":")
         raise UsageError(_OPTIONS.get(field, field) + colon + rest) from None
+    tests = found if request.include_long else keep_short(found, request.patterns)
+    if found and not tests:
+        raise UsageError(f"all {len(found)} tests selected are long ones; they run with --include-long")
     if not tests:
-        raise UsageError(f"{profile.id}: the profile has no tests of its own; give one, for instance --sag 90%")
-    return Job(profile, tests, parameters)
+        names = ", ".join(profile.id for profile in profiles)
+        raise UsageError(f"{names}: the profile has no tests of its own; give one, for instance --sag 90%")
+    return Job(profiles, tests, tuple(item for item in found if item not in tests), parameters)
+
+
+def _profiles(names: Sequence[str]) -> tuple[Profile, ...]:
+    known = known_profiles()
+    if not any(names):
+        raise UsageError(f"--profile is missing; known profiles: {', '.join(known)} (--help has an example)")
+    wanted = [name for given in names for name in (known if given == ALL else (given,))]
+    profiles = [load_profile(name) for name in dict.fromkeys(wanted)]
+    for profile in profiles:
+        if [other.id for other in profiles].count(profile.id) > 1:
+            raise UsageError(f"--profile: two profiles have the id {profile.id!r}; a report could not tell them apart")
+    return tuple(profiles)
 
 
 def _parameters(request: Request) -> Parameters:
@@ -100,13 +118,14 @@ def _parameters(request: Request) -> Parameters:
         raise UsageError(str(error).replace("--set simulation.fidelity:", "--fidelity:")) from None
 
 
-def _tests(profile: Profile, request: Request) -> tuple[TestCase, ...]:
+def _tests(profiles: tuple[Profile, ...], request: Request) -> tuple[Assignment, ...]:
     overrides: dict[str, Any] = _given(request.overrides)
     if request.events is not None:
         overrides["events"] = load_events(request.events)
     if request.sag is not None:
-        return (_sag_test(profile, request.sag, overrides),)
-    return select(profile.tests(**overrides), request.patterns)
+        return _sag_tests(profiles, request.sag, overrides)
+    found = [Assignment(profile, test) for profile in profiles for test in profile.tests(**overrides)]
+    return select(found, request.patterns)
 
 
 def _given(fields: Mapping[str, float | str | None]) -> dict[str, float | str]:
@@ -116,12 +135,21 @@ def _given(fields: Mapping[str, float | str | None]) -> dict[str, float | str]:
     return {name: value for name, value in fields.items() if value is not None}
 
 
-def _sag_test(profile: Profile, asked: SagRequest, overrides: dict[str, Any]) -> TestCase:
+def _sag_tests(profiles: tuple[Profile, ...], asked: SagRequest, overrides: dict[str, Any]) -> tuple[Assignment, ...]:
+    """One test, the same for every profile: as long as the most demanding of them asks for."""
     fields: dict[str, Any] = overrides | _given(
         {"point_on_wave_deg": asked.point_on_wave_deg, "irradiance_w_m2": asked.irradiance_w_m2}
     )
-    duration = parse_duration(asked.duration, "--duration") if asked.duration is not None else None
-    return profile.ad_hoc_test(_sag(asked), duration, **fields)
+    sag = _sag(asked)
+    if asked.duration is not None:
+        duration_s = parse_duration(asked.duration, "--duration")
+    else:
+        duration_s = max(profile.sag_duration_s(sag) for profile in profiles)
+    times = {
+        "before_s": max(profile.procedure.before_s.value for profile in profiles),
+        "after_s": max(profile.procedure.after_s.value for profile in profiles),
+    }
+    return tuple(Assignment(profile, profile.ad_hoc_test(sag, duration_s, **(times | fields))) for profile in profiles)
 
 
 def _sag(asked: SagRequest) -> Sag:

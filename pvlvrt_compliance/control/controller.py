@@ -20,6 +20,13 @@ from pvlvrt_compliance.control.synchronisation import SynchronisationParams, Syn
 from pvlvrt_compliance.kernel import kernel
 
 
+class Precision(NamedTuple):
+    """Which numbers the controller computes with: one is there, the other none. numba compiles the one that is."""
+
+    double: bool | None  # of 64 bits
+    single: bool | None  # of 32 bits, see precision.py
+
+
 class ControllerParams(NamedTuple):
     """Parameters by block, and the sample time."""
 
@@ -31,6 +38,7 @@ class ControllerParams(NamedTuple):
     current: CurrentRegulatorParams
     modulator: ModulatorParams
     T: float  # T_reg (s)
+    precision: Precision
 
 
 class ControllerState(NamedTuple):

@@ -59,13 +59,13 @@ def current_regulator_step(
 
     The resonators sit at h w0', from the turns of the synchronisation.
     """
-    k = 2 * p.w_c / w
+    k = 2.0 * p.w_c / w
     after = CurrentRegulatorState(
         h1=resonator_step(x.h1, e, k, turns.h1),
-        h5=resonator_step(x.h5, e, k / 5, turns.h5),
-        h7=resonator_step(x.h7, e, k / 7, turns.h7),
-        h11=resonator_step(x.h11, e, k / 11, turns.h11),
-        h13=resonator_step(x.h13, e, k / 13, turns.h13),
+        h5=resonator_step(x.h5, e, k / 5.0, turns.h5),
+        h7=resonator_step(x.h7, e, k / 7.0, turns.h7),
+        h11=resonator_step(x.h11, e, k / 11.0, turns.h11),
+        h13=resonator_step(x.h13, e, k / 13.0, turns.h13),
     )
     m = scaled(p.K_P, e) + scaled(p.K_I, leading_output(x.h1, turns.h1, p.lead))
     m += scaled(p.K_I5, leading_output(x.h5, turns.h5, p.lead))

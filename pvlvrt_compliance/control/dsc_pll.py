@@ -11,6 +11,7 @@ from pvlvrt_compliance.control.pll import locked as pll_locked
 from pvlvrt_compliance.control.synchronised import Synchronisation
 from pvlvrt_compliance.kernel import kernel
 from pvlvrt_compliance.sogi import harmonic_turns
+from pvlvrt_compliance.space_vectors import PI
 from pvlvrt_compliance.vectors import ahead, rotation, scaled, turned_back
 
 
@@ -41,11 +42,11 @@ def delayed(line: NDArray[np.complex128], k: int, samples: float) -> complex:
     The number is kept within what the line holds: compiled code does not check its indices.
     """
     size = len(line)
-    samples = min(max(samples, 1.0), size - 2.0)
+    samples = min(max(samples, 1.0), float(size) - 2.0)
     whole = min(max(int(samples), 1), size - 2)  # once more, for a number that is none
     nearer: complex = line[(k - whole) % size]
     farther: complex = line[(k - whole - 1) % size]
-    return nearer + scaled(samples - whole, farther - nearer)
+    return nearer + scaled(samples - float(whole), farther - nearer)
 
 
 @kernel
@@ -58,7 +59,7 @@ def dsc_pll_step(x: DscPllState, u_g_ab: complex, p: PllParams, T: float) -> tup
     Source: reference [21] of the paper.
     """
     x.line[x.k] = u_g_ab
-    j_quarter = ahead(delayed(x.line, x.k, 0.5 * math.pi / (x.pll.w * T)))
+    j_quarter = ahead(delayed(x.line, x.k, 0.5 * PI / (x.pll.w * T)))
     u_pos, u_neg = scaled(0.5, u_g_ab + j_quarter), scaled(0.5, u_g_ab - j_quarter)
     after = DscPllState(
         pll=pll_step(x.pll, turned_back(u_pos, rotation(x.pll.theta)), p, T),

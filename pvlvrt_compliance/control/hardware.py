@@ -5,15 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pvlvrt_compliance.control.controller import (
-    ControllerParams,
-    ControllerSignals,
-    ControllerState,
-    Measured,
-    controller_step,
-)
+from pvlvrt_compliance.control.controller import Measured
 from pvlvrt_compliance.control.delays import DelayLines, delayed
-from pvlvrt_compliance.control.precision import single_measured, single_signals, single_state
 from pvlvrt_compliance.control.sensors import SensorParams, measure
 from pvlvrt_compliance.kernel import kernel
 
@@ -24,18 +17,6 @@ class Hardware(NamedTuple):
     sensors: SensorParams
     lines: DelayLines
     random: NDArray[np.float64]  # standard normal numbers, shape (periods or 1, 8)
-    single: bool  # the controller keeps numbers of single precision
-
-
-@kernel
-def controller_on(
-    x: ControllerState, y: Measured, p: ControllerParams, hw: Hardware
-) -> tuple[ControllerState, ControllerSignals]:
-    """Advance the controller by one sample with the precision of its processor."""
-    if not hw.single:
-        return controller_step(x, y, p)
-    after, signals = controller_step(x, single_measured(y), p)
-    return single_state(after), single_signals(signals)
 
 
 @kernel

@@ -42,7 +42,7 @@ def mppt_step(x: MpptState, v_dc: float, i_pv: float, limited: bool, p: MpptPara
     energy = x.energy + (v_dc * i_pv if x.k >= half else 0.0)
     if x.k + 1 < p.period:
         return MpptState(v_ref=x.v_ref, direction=x.direction, k=x.k + 1, energy=energy, P_before=x.P_before)
-    P = energy / (p.period - half)
+    P = energy / float(p.period - half)
     direction = -x.direction if x.P_before > P else x.direction
     v_ref = min(max(x.v_ref + direction * p.dv, p.v_min), p.v_max)
     return MpptState(v_ref=v_ref, direction=direction, k=0, energy=0.0, P_before=P)

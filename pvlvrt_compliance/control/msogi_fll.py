@@ -45,10 +45,10 @@ def msogi_fll_step(x: MsogiFllState, u_g_ab: complex, p: FllParams, T: float) ->
     u_pos, u_neg = sequences(x.h1)
     after = MsogiFllState(
         h1=sogi_step(x.h1, scaled(p.K, e), turns.h1),
-        h5=sogi_step(x.h5, scaled(p.K / 5, e), turns.h5),
-        h7=sogi_step(x.h7, scaled(p.K / 7, e), turns.h7),
-        h11=sogi_step(x.h11, scaled(p.K / 11, e), turns.h11),
-        h13=sogi_step(x.h13, scaled(p.K / 13, e), turns.h13),
+        h5=sogi_step(x.h5, scaled(p.K / 5.0, e), turns.h5),
+        h7=sogi_step(x.h7, scaled(p.K / 7.0, e), turns.h7),
+        h11=sogi_step(x.h11, scaled(p.K / 11.0, e), turns.h11),
+        h13=sogi_step(x.h13, scaled(p.K / 13.0, e), turns.h13),
         w=fll_step(x.h1, e, x.w, p, T),
     )
     return after, Synchronisation(u_pos=u_pos, u_neg=u_neg, w=x.w, turns=turns)

@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.space_vectors import PI
 from pvlvrt_compliance.vectors import length
 
 
@@ -37,7 +38,7 @@ def pll_step(x: PllState, u_pos_dq: complex, p: PllParams, T: float) -> PllState
     rate = min(max(x.w + p.K_P * e, p.w_min), p.w_max)
     theta = x.theta + rate * T
     return PllState(
-        theta=theta - 2 * math.pi if theta > math.pi else theta,
+        theta=theta - 2.0 * PI if theta > PI else theta,
         w=min(max(x.w + p.K_I * e * T, p.w_min), p.w_max),
     )
 

@@ -1,66 +1,65 @@
-"""Single precision: what a controller that computes with 32-bit numbers keeps from one sample to the next.
+"""Single precision: a controller whose every number and every operation has 32 bits, as on most signal processors.
 
-Everything that the controller reads, remembers and puts out is rounded to single precision; within a sample the sums
-are those of double precision, so this is the least that 32-bit arithmetic does.
+The blocks are the same sources, compiled with constants, parameters and states of 32 bits (`kernel.in_single`). The
+sensors' numbers are rounded on their way in; what comes out is exact in 64 bits.
 """
 
-import types
-from typing import Any, NamedTuple, get_args, get_type_hints
+from typing import Any
 
 import numpy as np
-from numba.core.types import NoneType
-from numba.extending import overload
 
-from pvlvrt_compliance.control.controller import ControllerSignals, ControllerState, Measured
-from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.control.controller import (
+    ControllerParams,
+    ControllerSignals,
+    ControllerState,
+    Measured,
+    Precision,
+    controller_step,
+)
+from pvlvrt_compliance.kernel import in_single, kernel, single
+
+single_step = in_single(controller_step)
+"""`controller_step` with constants of 32 bits, for states, inputs and parameters of 32 bits."""
+
+_float32: Any = np.float32  # unlike those of 64 bits no subclass of what the fields are declared as
+_complex64: Any = np.complex64
+
+
+def in_single_precision(x: ControllerState, p: ControllerParams) -> tuple[ControllerState, ControllerParams]:
+    """State and parameters of a controller that computes in single precision, from those of one in double."""
+    return single(x), single(p._replace(precision=Precision(double=None, single=True)))
 
 
 @kernel
-def single_float(x: float) -> float:
-    """Nearest number of single precision."""
-    return np.float64(np.float32(x))
+def single_measured(y: Measured) -> Measured:
+    """Nearest numbers of 32 bits."""
+    return Measured(
+        u_g_ab=_complex64(y.u_g_ab),
+        i_ab=_complex64(y.i_ab),
+        v_dc=_float32(y.v_dc),
+        i_pv=_float32(y.i_pv),
+    )
 
 
 @kernel
-def single_complex(x: complex) -> complex:
-    """Nearest vector of single precision."""
-    return complex(np.float64(np.float32(x.real)), np.float64(np.float32(x.imag)))
+def double_signals(s: ControllerSignals) -> ControllerSignals:
+    """The same numbers in 64 bits, for the plant and the record."""
+    return ControllerSignals(
+        m=np.complex128(s.m),
+        V_fault=np.float64(s.V_fault),
+        fault=s.fault,
+        w=np.float64(s.w),
+        v_ref=np.float64(s.v_ref),
+        P_ref=np.float64(s.P_ref),
+        Q_ref=np.float64(s.Q_ref),
+        i_ref=np.complex128(s.i_ref),
+    )
 
 
-def _if_there(rounding: Any) -> Any:
-    """The same for what may be none, decided by its type, as numba would make an optional of it otherwise."""
-
-    def if_there(x: Any) -> Any:
-        return None if x is None else rounding(x)
-
-    @overload(if_there)
-    def _of_type(x):  # type: ignore[no-untyped-def] # numba compares the annotations with those of the lambdas
-        return (lambda x: None) if isinstance(x, NoneType) else (lambda x: rounding(x))  # noqa: ARG005, PLW0108
-
-    return if_there
-
-
-def _rounding(named_tuple: type[NamedTuple]) -> Any:
-    """Kernel that rounds every number of a NamedTuple and of those within; what is none, whole or an array stays.
-
-    Written out field by field from the annotations: numba can neither loop over fields of different types nor recurse.
-    """
-    known: dict[str, Any] = {"Tuple": named_tuple}
-    fields = []
-    for name, hint in get_type_hints(named_tuple).items():
-        inner = next((part for part in get_args(hint) or (hint,) if hasattr(part, "_fields")), None)
-        if inner is not None:
-            known[f"round_{name}"] = _if_there(_rounding(inner)) if type(None) in get_args(hint) else _rounding(inner)
-        elif hint is float:
-            known[f"round_{name}"] = single_float
-        elif hint is complex:
-            known[f"round_{name}"] = single_complex
-        fields.append(f"{name}=round_{name}(x.{name})" if f"round_{name}" in known else f"{name}=x.{name}")
-    source = f"def rounded(x):\n    return Tuple({', '.join(fields)})\n"
-    code = next(part for part in compile(source, __file__, "exec").co_consts if isinstance(part, types.CodeType))
-    return kernel(types.FunctionType(code, known, f"single_{named_tuple.__name__}"))
-
-
-single_measured = _rounding(Measured)
-single_state = _rounding(ControllerState)
-single_signals = _rounding(ControllerSignals)
+@kernel
+def controller_step_in_single(
+    x: ControllerState, y: Measured, p: ControllerParams
+) -> tuple[ControllerState, ControllerSignals]:
+    """Advance a controller of single precision by one sample of numbers of 64 bits."""
+    after, signals = single_step(x, single_measured(y), p)
+    return after, double_signals(signals)

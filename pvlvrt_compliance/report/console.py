@@ -1,14 +1,23 @@
 """The verdicts for a terminal, readable at 80 columns and without colour."""
 
+from collections.abc import Iterable
+
 from rich import box
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from pvlvrt_compliance.checks.results import Results, Status, TestResult
+from pvlvrt_compliance.checks.results import EXIT_STATUS, Results, Status, TestResult
 from pvlvrt_compliance.report import format as spell
 from pvlvrt_compliance.report.verdicts import Finding, counts, findings, verdicts
 
+_SHORT = {
+    Status.ERROR: "error",
+    Status.NOT_EVALUATED: "n/e",
+    Status.FAIL: "fail",
+    Status.PASS: "pass",
+    Status.NOT_APPLICABLE: "n/a",
+}
 _STYLE = {
     Status.ERROR: "bold magenta",
     Status.NOT_EVALUATED: "yellow",
@@ -18,13 +27,45 @@ _STYLE = {
 }
 
 
+_MANY_TESTS = 60
+
+
 def render(results: Results) -> RenderableType:
-    """Table, then what is to be said about every verdict that is not a pass, then one line of summary."""
+    """Table, then what is to be said about every verdict that is not a pass, then one line of summary.
+
+    Of many tests only the verdicts by profile and check are shown; the report has the rest.
+    """
+    summary = Text(summary_line(results), style=_STYLE[results.status])
+    if len(results.tests) > _MANY_TESTS:
+        return Group(overview_table(results), Text(), summary)
     parts: list[RenderableType] = [verdict_table(results), Text()]
     found = findings(results)
     if found:
         parts += [_finding(item) for item in found] + [Text()]
-    return Group(*parts, Text(summary_line(results), style=_STYLE[results.status]))
+    return Group(*parts, summary)
+
+
+def overview_table(results: Results) -> Table:
+    """How many verdicts of each kind every check has, by profile, and the first tests that are not passed."""
+    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=0)
+    table.add_column("profile / check", no_wrap=True)
+    for status in Status:
+        table.add_column(_SHORT[status], justify="right", no_wrap=True)
+    table.add_column("not passed in", overflow="ellipsis", no_wrap=True)
+    for profile in dict.fromkeys(test.profile for test in results.tests):
+        tests = [test for test in results.tests if test.profile == profile]
+        title = f"{profile}: {len(tests)} test{'' if len(tests) == 1 else 's'}"
+        table.add_row(Text(title, style="bold"), *_counts(test.status for test in tests), "")
+        for name in dict.fromkeys(check.check for test in tests for check in verdicts(test)):
+            found = [(test, check.status) for test in tests for check in verdicts(test) if check.check == name]
+            bad = [test.id for test, status in found if EXIT_STATUS[status]]
+            table.add_row(Text(f"  {name}"), *_counts(status for _, status in found), Text(", ".join(bad)))
+    return table
+
+
+def _counts(statuses: Iterable[Status]) -> list[Text]:
+    found = list(statuses)
+    return [Text(str(found.count(s) or ""), style=_STYLE[s]) for s in Status]
 
 
 def verdict_table(results: Results) -> Table:

@@ -12,6 +12,14 @@ Samples = NDArray[np.float64]
 BUCKETS = 1500
 """Buckets of a decimated trace; each gives two points, so that it can keep its minimum and its maximum."""
 
+_BUCKETS_OF_A_REPORT = 90_000
+_FEWEST_BUCKETS = 300
+
+
+def buckets_for(figures: int) -> int:
+    """Buckets of a trace in a report of so many figures, which a browser must still be able to hold."""
+    return max(min(BUCKETS, _BUCKETS_OF_A_REPORT // max(figures, 1)), _FEWEST_BUCKETS)
+
 
 class Trace(NamedTuple):
     """Points on a uniform grid: point k is at ``x0 + k * dx`` (s)."""

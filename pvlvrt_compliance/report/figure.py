@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from pvlvrt_compliance.checks.results import TestResult
-from pvlvrt_compliance.report.decimation import Trace, typed_array
+from pvlvrt_compliance.report.decimation import BUCKETS, Trace, typed_array
 from pvlvrt_compliance.report.panels import BLACK, BLUE, GREY, VERMILION, Curve, Line, Panel, opening_s, panels
 from pvlvrt_compliance.report.scenario_words import sag_interval
 from pvlvrt_compliance.units import Nominal
@@ -40,6 +40,7 @@ def test_figure(
     nominal: Nominal,
     envelope: Sequence[tuple[float, float]] | None = None,  # noqa: PT028
     limits: Mapping[str, float] | None = None,  # noqa: PT028
+    buckets: int = BUCKETS,  # noqa: PT028
 ) -> Figure:
     """Draw voltages, sequence voltages, currents, powers and DC voltage over one common time axis.
 
@@ -56,13 +57,15 @@ def test_figure(
     limits : mapping, optional
         ``current_fundamental_pu``, ``current_peak_pu`` and ``reactive_power_kvar``; the last is by default the limit of
         the verdict on `reactive_support`.
+    buckets : int
+        Of a decimated signal, see `decimate`.
 
     Returns
     -------
     dict
         ``{"data": [...], "layout": {...}}`` for plotly.js 3 or later, ready for JSON.
     """
-    found = panels(waveforms, test, nominal, envelope, {**_limits_of(test), **(limits or {})})
+    found = panels(waveforms, test, nominal, envelope, {**_limits_of(test), **(limits or {})}, buckets)
     plot_px = sum(panel.height for panel in found) * _HEIGHT_PX + max(len(found) - 1, 0) * _GAP_PX
     placed = list(zip(found, _places(found, plot_px), strict=True))
     layout = {

@@ -2,10 +2,10 @@
 
 import json
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, partial
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
@@ -15,8 +15,16 @@ from pvlvrt_compliance.errors import PvlvrtError
 from pvlvrt_compliance.report import format as spell
 from pvlvrt_compliance.report import measurement_table, scenario_words
 from pvlvrt_compliance.report.provenance import provenance_groups
-from pvlvrt_compliance.report.verdicts import counts, findings, is_verified, verdicts
+from pvlvrt_compliance.report.verdicts import counts, findings, is_verified, name_of, verdicts
 from pvlvrt_compliance.resources import resource_folder
+
+
+class _SummaryTable(NamedTuple):
+    """Tests of one profile, each with its number on the page."""
+
+    profile: str
+    check_names: list[str]
+    tests: list[tuple[int, TestResult]]
 
 
 def render(results: Results, figures: Mapping[str, Mapping[str, Any]]) -> str:
@@ -26,7 +34,7 @@ def render(results: Results, figures: Mapping[str, Mapping[str, Any]]) -> str:
     ----------
     results : Results
     figures : mapping
-        Figures as `figure.test_figure` returns them, by the id of their test; a test without one says so.
+        Figures as `figure.test_figure` returns them, by the key of their test; a test without one says so.
 
     Raises
     ------
@@ -34,15 +42,16 @@ def render(results: Results, figures: Mapping[str, Mapping[str, Any]]) -> str:
         When the templates or plotly's JavaScript are missing from the installation.
     """
     folder = resource_folder("reports")
-    used = {test.id: figures[test.id] for test in results.tests if test.id in figures}
+    used = {test.key: figures[test.key] for test in results.tests if test.key in figures}
     return (
         _environment(folder)
         .get_template("report.html.j2")
         .render(
             results=results,
+            name=partial(name_of, results=results),
             counts=counts(results),
             findings=findings(results),
-            check_names=_check_names(results),
+            tables=_summary_tables(results),
             marks=_marks(results),
             provenance=provenance_groups(results.provenance),
             figures={name: _json(figure) for name, figure in used.items()},
@@ -78,8 +87,16 @@ def _environment(folder: Path) -> Environment:
     return environment
 
 
-def _check_names(results: Results) -> list[str]:
-    return list(dict.fromkeys(check.check for test in results.tests for check in verdicts(test)))
+def _summary_tables(results: Results) -> list[_SummaryTable]:
+    """Tests by profile, in order, with the names of the checks that occur among them."""
+    profiles = list(dict.fromkeys(test.profile for test in results.tests))
+    numbered = list(enumerate(results.tests, start=1))
+    return [_summary_table(name, [(n, test) for n, test in numbered if test.profile == name]) for name in profiles]
+
+
+def _summary_table(profile: str, tests: list[tuple[int, TestResult]]) -> _SummaryTable:
+    names = dict.fromkeys(check.check for _, test in tests for check in verdicts(test))
+    return _SummaryTable(profile, list(names), tests)
 
 
 def _check_of(test: TestResult, name: str) -> list[Check]:

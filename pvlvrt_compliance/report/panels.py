@@ -1,6 +1,7 @@
 """What the figure of a test shows: panels of signals, each with its limits."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -66,15 +67,17 @@ def panels(
     nominal: Nominal,
     envelope: Sequence[tuple[float, float]] | None,
     limits: Mapping[str, float],
+    buckets: int = BUCKETS,
 ) -> list[Panel]:
     """Panels of a test; one whose channels the record does not hold is left out."""
     before = test.measurements.before
     frequency_hz = (before.frequency_hz if before else None) or nominal.frequency_hz
     sag = sag_interval(test.scenario)
     span = (waveforms.t0_s, waveforms.end_s)
-    voltage = _curves(waveforms, lambda s: _three_phase(s, "u", nominal.phase_voltage_peak_v))
-    sequences = _curves(waveforms, lambda s: _sequences(s, frequency_hz, nominal))
-    current = _curves(waveforms, lambda s: _three_phase(s, "i", nominal.phase_current_peak_a))
+    curves = partial(_curves, waveforms, buckets)
+    voltage = curves(lambda s: _three_phase(s, "u", nominal.phase_voltage_peak_v))
+    sequences = curves(lambda s: _sequences(s, frequency_hz, nominal))
+    current = curves(lambda s: _three_phase(s, "i", nominal.phase_current_peak_a))
     found = [
         Panel("Phase-to-neutral voltages", "pu", 1.0, voltage),
         Panel(
@@ -86,8 +89,8 @@ def panels(
             from_zero=True,
         ),
         Panel("Phase currents", "pu", 1.2, current, _current_limits(limits, span)),
-        Panel("Active and reactive power", "kW, kvar", 1.2, _curves(waveforms, _power), _q_limit(limits, test)),
-        Panel("DC voltage", "V", 0.8, _curves(waveforms, lambda s: {"v<sub>DC</sub>": (BLACK, s["v_dc_v"])})),
+        Panel("Active and reactive power", "kW, kvar", 1.2, curves(_power), _q_limit(limits, test)),
+        Panel("DC voltage", "V", 0.8, curves(lambda s: {"v<sub>DC</sub>": (BLACK, s["v_dc_v"])})),
     ]
     return [panel for panel in found if panel.curves]
 
@@ -104,7 +107,7 @@ def opening_s(waveforms: Waveforms) -> float | None:
     return None
 
 
-def _curves(waveforms: Waveforms, signals_of: Callable[[Segment], Signals]) -> list[Curve]:
+def _curves(waveforms: Waveforms, buckets: int, signals_of: Callable[[Segment], Signals]) -> list[Curve]:
     """Curves by name over all segments that the signals can be had from."""
     total = sum(len(segment) for segment in waveforms)
     colours: dict[str, str] = {}
@@ -112,7 +115,7 @@ def _curves(waveforms: Waveforms, signals_of: Callable[[Segment], Signals]) -> l
     for segment, signals in _signals(waveforms, signals_of):
         for name, (colour, samples) in signals.items():
             colours[name] = colour
-            share = max(BUCKETS * len(segment) // total, 1)
+            share = max(buckets * len(segment) // total, 1)
             traces.setdefault(name, []).append(_without_leading_gap(segment, samples, share))
     return [Curve(name, colours[name], traces[name]) for name in traces]
 

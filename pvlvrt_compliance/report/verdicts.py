@@ -15,6 +15,11 @@ class Finding(NamedTuple):
     message: str
 
 
+def name_of(test: TestResult, results: Results) -> str:
+    """Name of a test in a report: with its profile where there are several."""
+    return test.key if len(results.profiles) > 1 else test.id
+
+
 def verdicts(test: TestResult) -> tuple[Check, ...]:
     """Checks of a test; a test that ended before any check still has one verdict, its own."""
     return test.checks or (Check(check="test", status=test.status, message="no check was evaluated"),)
@@ -25,7 +30,7 @@ def findings(results: Results) -> list[Finding]:
     tests: dict[tuple[tuple[str, ...], Status, str], list[str]] = {}
     for test in results.tests:
         for (status, message), checks in _by_reason(test).items():
-            tests.setdefault((tuple(checks), status, message), []).append(test.id)
+            tests.setdefault((tuple(checks), status, message), []).append(name_of(test, results))
     found = [Finding(tuple(names), *reason) for reason, names in tests.items()]
     return sorted(found, key=lambda item: list(Status).index(item.status))
 

@@ -121,7 +121,7 @@ class ControllerParameters(_Group):
     mppt_step_v: NotNegative = Field(default=0.5, description="size of a perturbation; not in the paper")
     mppt_voltage_min_v: NotNegative = Field(default=600.0, description="lower limit of v*_DC; not in the paper")
     mppt_voltage_max_v: Positive = Field(default=1000.0, description="upper limit of v*_DC; not in the paper")
-    precision: Precision = Field(default="double", description="of the numbers that the controller keeps")
+    precision: Precision = Field(default="double", description="of the controller's arithmetic: 64 or 32 bits")
     computation_delay_samples: int = Field(
         default=1, ge=0, le=20, description="from a sample to the period in which its modulating signal acts"
     )

@@ -34,9 +34,8 @@ def sensor_params(s: SensorParameters) -> SensorParams:
 def hardware_of(parameters: Parameters, start: Start, periods: int) -> Hardware | None:
     """Hardware of a run over so many control periods, in the steady state of its start; none where it is ideal."""
     s, delay = parameters.sensors, parameters.controller.computation_delay_samples
-    single = parameters.controller.precision == "single"
     default = ControllerParameters.model_fields["computation_delay_samples"].default
-    if s == SensorParameters() and delay == default and not single:
+    if s == SensorParameters() and delay == default:
         return None
     sensors = sensor_params(s)
     at_start = Measured(u_g_ab=start.u_g_ab, i_ab=start.plant.i, v_dc=start.plant.v_dc, i_pv=start.plant.i_pv)
@@ -45,5 +44,4 @@ def hardware_of(parameters: Parameters, start: Start, periods: int) -> Hardware 
         sensors=sensors,
         lines=filled(DelayParams(measurement=s.measurement_delay_samples, computation=delay), at_start, start.m),
         random=np.random.default_rng(s.noise_seed).standard_normal((rows, len(CHANNELS))),
-        single=single,
     )

@@ -14,7 +14,8 @@ from pvlvrt_compliance.control.controller import (
     controller_step,
 )
 from pvlvrt_compliance.control.delays import acting, put
-from pvlvrt_compliance.control.hardware import Hardware, controller_on, read
+from pvlvrt_compliance.control.hardware import Hardware, read
+from pvlvrt_compliance.control.precision import controller_step_in_single
 from pvlvrt_compliance.kernel import cached_kernel, kernel
 from pvlvrt_compliance.plant.grid import source_at
 from pvlvrt_compliance.plant.plant import Observed, PlantParams, PlantState, PlantTables, advance, as_at, observe
@@ -67,12 +68,14 @@ def is_finite(x: PlantState, s: ControllerSignals) -> bool:
 
 @kernel
 def controller_with(
-    x: ControllerState, y: Measured, p: ControllerParams, hardware: Hardware | None
+    x: ControllerState, y: Measured, p: ControllerParams, double: bool | None, single: bool | None
 ) -> tuple[ControllerState, ControllerSignals]:
-    """Advance the controller by one sample, on hardware or ideally."""
-    if hardware is None:
+    """Advance the controller by one sample, in the precision of its numbers."""
+    if double is not None:
         return controller_step(x, y, p)
-    return controller_on(x, y, p, hardware)
+    if single is None:
+        raise ValueError("no precision is chosen")
+    return controller_step_in_single(x, y, p)
 
 
 @cached_kernel
@@ -114,7 +117,10 @@ def run(
         sampled = Measured(u_g_ab=y.u_ab, i_ab=plant.i, v_dc=plant.v_dc, i_pv=plant.i_pv)
         if hardware is not None:
             sampled = read(sampled, y.u_zero, n, first, hardware)
-        controller, signals = controller_with(controller, sampled, controller_params, hardware)
+        precision = controller_params.precision
+        controller, signals = controller_with(
+            controller, sampled, controller_params, precision.double, precision.single
+        )
         if not is_finite(plant, signals):
             return Outcome(status=NOT_FINITE, samples=max(n, 0), plant=plant)
         if n >= 0:

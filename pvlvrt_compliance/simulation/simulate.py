@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from pvlvrt_compliance.control.precision import in_single_precision
 from pvlvrt_compliance.errors import SimulationError
 from pvlvrt_compliance.plant import pv_array
 from pvlvrt_compliance.scenario.parameters import Parameters
@@ -46,7 +47,10 @@ def simulate(scenario: Scenario, parameters: Parameters, run=run) -> Waveforms: 
     samples = np.empty((math.floor(scenario.end_s / T_reg) + 1, len(CHANNELS)))
     start = steady_state(plant, tables.grid, controller, scenario, -settling * T_reg)
     hardware = hardware_of(parameters, start, settling + len(samples))
-    outcome = run(start.plant, start.controller, start.m, -settling, plant, tables, controller, hardware, samples)
+    state = start.controller
+    if parameters.controller.precision == "single":
+        state, controller = in_single_precision(state, controller)
+    outcome = run(start.plant, state, start.m, -settling, plant, tables, controller, hardware, samples)
     if outcome.status != COMPLETED:
         raise SimulationError(f"a number stopped being finite at {outcome.samples * T_reg:.4f} s")
     columns = np.ascontiguousarray(samples.T)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pvlvrt_compliance.control import current_references, dc_voltage_regulator, fll, mppt, pll, synchronisation
-from pvlvrt_compliance.control.controller import ControllerParams, ControllerState
+from pvlvrt_compliance.control.controller import ControllerParams, ControllerState, Precision
 from pvlvrt_compliance.control.current_references import CurrentReferenceParams
 from pvlvrt_compliance.control.current_regulator import CurrentRegulatorParams, at_rest_regulator
 from pvlvrt_compliance.control.dc_voltage_regulator import DcVoltageRegulatorParams
@@ -207,6 +207,7 @@ def controller_params(parameters: Parameters, scenario: Scenario) -> ControllerP
         ),
         modulator=ModulatorParams(K_PWM=K_PWM, m_max=M_MAX, feedforward=float(c.grid_voltage_feedforward)),
         T=T_reg,
+        precision=Precision(double=True, single=None),
     )
 
 

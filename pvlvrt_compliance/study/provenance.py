@@ -33,13 +33,15 @@ def created_at() -> datetime:
         raise UsageError(f"SOURCE_DATE_EPOCH: {text!r} is not a number of seconds") from None
 
 
-def provenance(profile: Profile, parameters: Parameters, command: Sequence[str], created: datetime) -> dict[str, Any]:
+def provenance(
+    profiles: Sequence[Profile], parameters: Parameters, command: Sequence[str], created: datetime
+) -> dict[str, Any]:
     """Everything that decides the figures of a run, as `results.json` carries it."""
     return {
         "created": created.isoformat(),
         "command": _quoted(command),
-        "profile": profile.id,
-        "profile_digest": profile.digest,
+        "profile": ", ".join(profile.id for profile in profiles),
+        "profile_digest": ", ".join(profile.digest for profile in profiles),
         "controller": "bundled",
         "controller_digest": kernel_digest(),
         "versions": {

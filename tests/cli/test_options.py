@@ -57,7 +57,13 @@ def test_two_phase(judge, options, pair):
     """The voltage between the two phases sags: V+ = (1 + r)/2, V- = (1 - r)/2; the pair is bc unless named."""
     ended, reports = judge("--sag", "60%", *options)
     assert ended.status == 0
-    assert reports.test["scenario"]["sag"] == {"depth": 0.6, "phases": pair, "two_phase": True, "type": None}
+    assert reports.test["scenario"]["sag"] == {
+        "depth": 0.6,
+        "phases": pair,
+        "two_phase": True,
+        "type": None,
+        "angle_deg": 0.0,
+    }
     during = reports.test["measurements"]["during"]
     assert during["voltage_positive_pu"] == pytest.approx(0.7, abs=1e-3)
     assert during["voltage_negative_pu"] == pytest.approx(0.3, abs=1e-3)
@@ -114,6 +120,7 @@ def test_grid_and_weather(judge):
         "point_on_wave_deg": -90,
         "vector_group": "Dyn11",
         "events": [],
+        "reactive_power_pu": 0,
     }
     before = reports.test["measurements"]["before"]
     assert before["frequency_hz"] == pytest.approx(60, abs=0.01)

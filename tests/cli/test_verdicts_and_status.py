@@ -72,7 +72,7 @@ def second_overflows(monkeypatch):
         return simulate(scenario, parameters_from(["controller.sogi_gain=1e300"]) if len(seen) == 2 else parameters)
 
     right = study_run.run_test
-    monkeypatch.setattr(study_run, "run_test", lambda *arguments: right(*arguments, simulator=simulator))
+    monkeypatch.setattr(study_run, "run_test", lambda *arguments: right(*arguments[:3], simulator=simulator))
 
 
 @pytest.mark.usefixtures("second_overflows")

@@ -134,13 +134,13 @@ def test_a_phase_jump(dt_s, jump_deg):
 @pytest.mark.parametrize("frequency_hz", [49.0, 50.0, 50.4])
 @pytest.mark.parametrize("sag", [(0.1, 0, 0), (0.7, 0.3, 0.3), (0.7, -0.3j, 0), (0.5 + 0.4j, 0.5, 0)])
 def test_a_sag_is_seen_as_with_the_true_frequency(dt_s, sag, frequency_hz):
-    """Through a sag and its end the sequences are those taken at the true frequency, within 0.5 % of nominal."""
+    """Through a sag and its end the sequences are those taken at the true frequency, within 0.1 % of nominal."""
     t = dt_s * np.arange(16000)
     whole, low = (voltages(t, frequency_hz, s, {}) for s in ((1, 0, 0), sag))
     segment = record(300 * np.where((t >= 0.2) & (t < 0.4), low, whole), dt_s)
     found, expected = tracked_sequences(segment, "u", 50), sequence_phasors(segment, "u", frequency_hz)
     for a, b in zip(found, expected, strict=True):
-        assert np.nanmax(np.abs(np.abs(a) - np.abs(b))) < 0.005 * 300
+        assert np.nanmax(np.abs(np.abs(a) - np.abs(b))) < 0.001 * 300
 
 
 def test_the_last_frequency_is_held_without_voltage(dt_s):
@@ -221,3 +221,31 @@ def test_the_phasors_are_fortescues(dt_s):
     waves = [(p * np.exp(2j * np.pi * 50 * dt_s * np.arange(3000))).real for p in phases(*parts)]
     for found, expected in zip(tracked_sequences(record(waves, dt_s), "u", 50), parts, strict=True):
         assert np.nanmax(np.abs(found - expected)) < 1e-3
+
+
+DISTORTED = {5: (0, 32.5, 0), 7: (32.5j, 0, 0), 3: (0, 0, 20), 11: (0, 10, 0)}
+UNBALANCED = (325, 97.5, 30)
+
+
+@pytest.mark.parametrize("nominal_hz", [50, 60])
+@pytest.mark.parametrize("off_hz", [-3, -1.3, 0, 0.7, 2])
+def test_the_figures_of_the_page_in_a_steady_state(dt_s, nominal_hz, off_hz):
+    """5e-8 of U+ in the sequences; 0.6 mHz from the first value on and 0.03 mHz later."""
+    frequency_hz = nominal_hz + off_hz
+    segment = record(voltages(dt_s * np.arange(6000), frequency_hz, UNBALANCED, DISTORTED), dt_s)
+    for phasor, expected in zip(tracked_sequences(segment, "u", nominal_hz), UNBALANCED, strict=True):
+        assert np.nanmax(np.abs(np.abs(phasor) - expected)) < 5e-8 * 325
+    off = np.abs(tracked_frequency(segment, nominal_hz) - frequency_hz)
+    assert np.nanmax(off) < 0.6e-3
+    assert off[3000:].max() < 0.03e-3
+
+
+def test_the_figures_of_the_page_with_noise(dt_s):
+    """Noise of 1 % in every phase for a second: 0.13 % of U+ in the sequences, 13 mHz, 4 mHz of deviation."""
+    waves = voltages(dt_s * np.arange(24000), 49.3, UNBALANCED, DISTORTED)
+    noisy = record(waves + np.random.default_rng(1).normal(scale=3.25, size=waves.shape), dt_s)
+    for phasor, expected in zip(tracked_sequences(noisy, "u", 50), UNBALANCED, strict=True):
+        assert np.nanmax(np.abs(np.abs(phasor) - expected)) < 0.0013 * 325
+    off = tracked_frequency(noisy, 50) - 49.3
+    assert np.nanmax(np.abs(off)) < 0.013
+    assert np.nanstd(off) < 0.004

@@ -13,7 +13,7 @@ from pvlvrt_compliance.report import html
 def page(make_test, make_results, make_figure):
     """A report of two tests, one of them failed."""
     tests = [make_test("VD3-full-1"), make_test("VD3-full-2", Status.FAIL)]
-    return html.render(make_results(*tests), {test.id: make_figure(test) for test in tests})
+    return html.render(make_results(*tests), {test.key: make_figure(test) for test in tests})
 
 
 @pytest.fixture(scope="module")
@@ -103,7 +103,7 @@ def test_text_is_text(make_test, make_results, make_figure):
     )
     test = make_test(evil, checks=checks, title=evil, scenario={evil: evil})
     figure = make_figure(make_test()) | {"note": evil}
-    page = html.render(make_results(test), {test.id: figure})
+    page = html.render(make_results(test), {test.key: figure})
     assert "<script>alert" not in page
     assert escaping.escape(evil) in page
     assert len(re.findall(r"<script[ >]", page.split("plotly.js v")[0])) == 2

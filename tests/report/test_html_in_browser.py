@@ -42,7 +42,7 @@ document.documentElement.dataset.asked = "";
 def page(make_test, make_results, make_figure):
     """A report of three tests."""
     tests = [make_test(name) for name in NAMES]
-    return html.render(make_results(*tests), {test.id: make_figure(test) for test in tests})
+    return html.render(make_results(*tests), {test.key: make_figure(test) for test in tests})
 
 
 def _dom(page: str, folder: Path, *options: str):

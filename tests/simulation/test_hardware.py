@@ -113,15 +113,6 @@ def test_computation_delay_costs_the_margin():
     assert segment["connected"].min() == 0 or np.abs(segment["i_a_a"]).max() > 1.3 * NOMINAL_A
 
 
-def test_single_precision():
-    """Numbers of 32 bits move the current by less than a thousandth of nominal, and by something."""
-    double, single = run(depth=0.9), run("controller.precision=single", depth=0.9)
-    apart = np.abs(double["i_a_a"] - single["i_a_a"]).max()
-    assert 1e-6 * NOMINAL_A < apart < 1e-3 * NOMINAL_A
-    assert np.array_equal(single["p_ref_w"], single["p_ref_w"].astype(np.float32).astype(np.float64))
-    assert not np.array_equal(double["p_ref_w"], double["p_ref_w"].astype(np.float32).astype(np.float64))
-
-
 def test_realistic_hardware_passes():
     """The paper's control passes its own sags with the tolerances, noise and resolution of ordinary hardware."""
     profile = load_profile("iec61400-21")

@@ -47,7 +47,7 @@ def origin():
     """Provenance of a run with one parameter changed."""
     parameters = parameters_from(["controller.sogi_gain=1.2"])
     command = ("pvlvrt-check", "--test", "VD3*", "--output", "my reports")
-    return provenance(load_profile("iec61400-21"), parameters, command, CREATED)
+    return provenance([load_profile("iec61400-21")], parameters, command, CREATED)
 
 
 def test_command_can_be_pasted(origin):
@@ -71,6 +71,6 @@ def test_what_is_told(origin):
 
 def test_digests_tell_profiles_apart(origin):
     """Another profile has another digest, the same controller the same."""
-    other = provenance(load_profile("spain-q-curve"), Parameters(), (), CREATED)
+    other = provenance([load_profile("spain-q-curve")], Parameters(), (), CREATED)
     assert other["profile_digest"] != origin["profile_digest"]
     assert other["controller_digest"] == origin["controller_digest"]

@@ -6,15 +6,16 @@ from hypothesis import strategies as st
 
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.profile import load_profile
-from pvlvrt_compliance.study.selection import select
+from pvlvrt_compliance.study.selection import Assignment, keep_short, select
 
-TESTS = load_profile("iec61400-21").tests()
-IDS = [test.id for test in TESTS]
+PROFILE = load_profile("iec61400-21")
+TESTS = [Assignment(PROFILE, test) for test in PROFILE.tests()]
+IDS = [item.test.id for item in TESTS]
 
 
 def ids(*patterns):
     """Ids of the tests that the patterns select."""
-    return [test.id for test in select(TESTS, patterns)]
+    return [item.test.id for item in select(TESTS, patterns)]
 
 
 def test_no_pattern_selects_all():
@@ -61,3 +62,16 @@ def test_profile_without_tests():
     """A pattern on a profile without tests is refused without a list of ids."""
     with pytest.raises(UsageError, match="--test VD1: no test of this name"):
         select([], ["VD1"])
+
+
+def test_a_pattern_with_the_profile():
+    """The profile's id before a dot tells tests of several profiles apart."""
+    assert ids("iec61400-21.VD3-*-1") == ["VD3-full-1", "VD3-partial-1"]
+
+
+def test_long_tests_run_on_request():
+    """A long test is left out unless a pattern names it in full."""
+    long = Assignment(PROFILE, TESTS[0].test.model_copy(update={"id": "half-an-hour", "long": True}))
+    assert keep_short([*TESTS, long], ()) == tuple(TESTS)
+    assert keep_short([*TESTS, long], ["half*"]) == tuple(TESTS)
+    assert keep_short([*TESTS, long], ["Half-an-Hour"])[-1] == long
