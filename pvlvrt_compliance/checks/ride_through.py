@@ -3,6 +3,7 @@
 import numpy as np
 
 from pvlvrt_compliance.checks.evidence import Evidence, require_finite
+from pvlvrt_compliance.checks.recovery import recovered_after_s
 from pvlvrt_compliance.checks.results import Check, Status
 from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
 from pvlvrt_compliance.errors import MeasurementError
@@ -143,7 +144,7 @@ def _judge_recovery(requirement: RideThrough, evidence: Evidence) -> Check:
     before_kw = evidence.power_before_kw
     allowed_s = requirement.recovery_time_s.value
     target = f"{100 * requirement.recovery_fraction.value:g} % of the {before_kw:.1f} kW before the sag"
-    back_s = _recovered_after_s(evidence, requirement.recovery_fraction.value * before_kw)
+    back_s = recovered_after_s(evidence, clear_s, requirement.recovery_fraction.value * before_kw)
     observed_s = evidence.waveforms.end_s - clear_s
     if back_s is None and observed_s < allowed_s:
         raise MeasurementError(f"the record ends {observed_s:.3f} s after clearing, before P is back at {target}")
@@ -161,15 +162,3 @@ def _judge_recovery(requirement: RideThrough, evidence: Evidence) -> Check:
         at_s=clear_s + recovered_s,
         rests_on=[number for _, number in marks_in(requirement)],
     )
-
-
-def _recovered_after_s(evidence: Evidence, target_kw: float) -> float | None:
-    """Time from clearing until P stays at or above a power (s), None when it ends below it."""
-    clear_s = evidence.scenario.clear_s
-    after = evidence.between(clear_s, evidence.waveforms.end_s)
-    t_s = evidence.t_s[after]
-    active_power = require_finite(evidence.active_power_kw[after], "P", t_s)
-    too_low = np.flatnonzero(active_power < target_kw)
-    if not len(too_low):
-        return 0.0
-    return float(t_s[too_low[-1] + 1] - clear_s) if too_low[-1] + 1 < len(t_s) else None
