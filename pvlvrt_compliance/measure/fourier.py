@@ -15,6 +15,9 @@ from pvlvrt_compliance.waveforms.container import Samples
 
 ComplexSamples = NDArray[np.complex128]
 
+Frequency = float | Samples
+"""A frequency (Hz): one for all samples, or one at each sample, shape (n,), finite."""
+
 # A cycle that misses a whole number of samples by less than this, in samples, is taken to be whole.
 _ROUND_OFF = 1e-9
 
@@ -46,24 +49,34 @@ class WholeCycles(NamedTuple):
         return weights
 
 
-def turning(n: int, dt_s: float, frequency_hz: float) -> ComplexSamples:
-    """Return exp(-j 2 pi f t) at n samples, t = 0 at the first one; shape (n,)."""
-    turned: ComplexSamples = np.exp(-2j * np.pi * frequency_hz * dt_s * np.arange(n))
+def turning(n: int, dt_s: float, frequency_hz: Frequency) -> ComplexSamples:
+    """Return exp(-j 2 pi integral of f dt) at n samples, angle 0 at the first one; shape (n,)."""
+    cycles = running_integral(frequency_hz) if isinstance(frequency_hz, np.ndarray) else frequency_hz * np.arange(n)
+    turned: ComplexSamples = np.exp(-2j * np.pi * dt_s * cycles)
     return turned
 
 
-def one_cycle_phasor(x: NDArray[Any], dt_s: float, frequency_hz: float, order: int = 1) -> ComplexSamples:
+def running_integral(y: NDArray[Any]) -> NDArray[Any]:
+    """Integral over the samples so far, by trapezoids, 0 at the first one; in sampling steps, shape (..., n)."""
+    integral: NDArray[Any] = np.cumsum(y, axis=-1) - 0.5 * (y + y[..., :1])
+    return integral
+
+
+def one_cycle_phasor(x: NDArray[Any], dt_s: float, frequency_hz: Frequency, order: int = 1) -> ComplexSamples:
     """Fourier component of the cycle that ends at each sample.
 
     X(t) = (2/T) integral of x exp(-j order w tau) over tau = t - T .. t, tau = 0 at sample 0: A cos(w t + phi) gives
-    A exp(j phi) at every sample. This is the one-cycle window that IEC 61400-21 practice takes phasors with.
+    A exp(j phi) at every sample. This is the one-cycle window that IEC 61400-21 practice takes phasors with. With a
+    frequency at each sample, w tau is the angle turned since sample 0 and T the cycle by the frequency at t.
 
     Parameters
     ----------
     x : array, shape (..., n)
         Samples, finite.
-    dt_s, frequency_hz : float
-        Sampling step (s); frequency of the fundamental (Hz).
+    dt_s : float
+        Sampling step (s).
+    frequency_hz : float or array, shape (n,)
+        Frequency of the fundamental (Hz), one for all or one at each sample.
     order : int
         Harmonic order, 1 or more.
 
@@ -71,24 +84,32 @@ def one_cycle_phasor(x: NDArray[Any], dt_s: float, frequency_hz: float, order: i
     -------
     array, shape (..., n)
         Phasors in the unit of x, peak values; nan + j nan during the first cycle and one sample.
+
+    Raises
+    ------
+    MeasurementError
+        When a cycle has fewer than two samples.
     """
     return 2 * _one_cycle_average(x * turning(x.shape[-1], dt_s, order * frequency_hz), 1 / (frequency_hz * dt_s))
 
 
-def one_cycle_mean(x: Samples, dt_s: float, frequency_hz: float) -> Samples:
-    """Mean of the cycle that ends at each sample, shape (..., n), NaN during the first cycle and one sample."""
+def one_cycle_mean(x: Samples, dt_s: float, frequency_hz: Frequency) -> Samples:
+    """Mean of the cycle that ends at each sample, shape (..., n), NaN during the first cycle and one sample.
+
+    Parameters and errors as `one_cycle_phasor`.
+    """
     mean: Samples = _one_cycle_average(x, 1 / (frequency_hz * dt_s))
     return mean
 
 
-def _one_cycle_average(y: NDArray[Any], cycle: float) -> NDArray[Any]:
+def _one_cycle_average(y: NDArray[Any], cycle: Frequency) -> NDArray[Any]:
     # By trapezoids the integral of a sinusoid is exact but for one factor, the same at all samples, so its difference
-    # over a cycle vanishes where it should. The value one cycle ago falls between samples: a cubic through four.
-    integral = np.cumsum(y, axis=-1) - 0.5 * (y + y[..., :1])
+    # over a cycle vanishes where it should.
+    if isinstance(cycle, np.ndarray):
+        return _tracking_average(y, cycle)
+    integral = running_integral(y)
     back = math.ceil(cycle - _ROUND_OFF)
-    if back < 2:
-        raise MeasurementError("fewer than two samples a cycle")
-    average = np.full(y.shape, np.nan * (1 + 1j) if np.iscomplexobj(y) else np.nan)
+    average = _unknown_until_a_cycle(y, back)
     count = y.shape[-1] - back - 1
     if count > 0:
         nodes = enumerate(_cubic_weights(max(back - cycle, 0.0)))
@@ -97,8 +118,27 @@ def _one_cycle_average(y: NDArray[Any], cycle: float) -> NDArray[Any]:
     return average
 
 
-def _cubic_weights(f: float) -> tuple[float, float, float, float]:
-    """Lagrange weights of the nodes -1, 0, 1, 2 for a point between 0 and 1."""
+def _tracking_average(y: NDArray[Any], cycle: Samples) -> NDArray[Any]:
+    """As `_one_cycle_average`, with a cycle of its own (in samples) at each sample."""
+    integral = running_integral(y)
+    back = np.ceil(cycle - _ROUND_OFF).astype(np.intp)
+    average = _unknown_until_a_cycle(y, int(back.min(initial=2)))
+    now = np.flatnonzero(np.arange(len(cycle)) > back)
+    first = now - back[now] - 1
+    nodes = enumerate(_cubic_weights(np.maximum(back - cycle, 0.0)[now]))
+    past = sum(weight * integral[..., first + node] for node, weight in nodes)
+    average[..., now] = (integral[..., now] - past) / cycle[now]
+    return average
+
+
+def _unknown_until_a_cycle(y: NDArray[Any], back: int) -> NDArray[Any]:
+    if back < 2:
+        raise MeasurementError("fewer than two samples a cycle")
+    return np.full(y.shape, np.nan * (1 + 1j) if np.iscomplexobj(y) else np.nan)
+
+
+def _cubic_weights(f: Any) -> tuple[Any, Any, Any, Any]:
+    """Lagrange weights of the nodes -1, 0, 1, 2 for a point between 0 and 1: the value one cycle ago."""
     return (
         -f * (f - 1) * (f - 2) / 6,
         (f + 1) * (f - 1) * (f - 2) / 2,

@@ -7,7 +7,7 @@ import numpy as np
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_phasor
 from pvlvrt_compliance.space_vectors import SQRT2_3, clarke
-from pvlvrt_compliance.waveforms.container import Segment, Waveforms
+from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
 
 AMPLITUDE_FLOOR = 1.0
 """Positive-sequence amplitude (V or A, peak) below which no frequency is measured."""
@@ -84,3 +84,31 @@ def frequency_before(waveforms: Waveforms, start_s: float, nominal_hz: float, fl
         if len(piece) * piece.dt_s * nominal_hz >= 2:
             return fundamental_frequency(piece, nominal_hz, floor=floor)
     raise MeasurementError(f"the record before {start_s:.3f} s is too short to measure its frequency")
+
+
+def rocof_hz_s(t_s: Samples, frequency_hz: Samples, window_s: float) -> Samples:
+    """Rate of change of frequency, mean over the window that ends at each instant.
+
+    (f(t) - f(t - W)) / W, straight lines between the samples. Half a window late, besides the delay of f.
+
+    Parameters
+    ----------
+    t_s, frequency_hz : array, shape (n,)
+        Instants (s), rising, and the frequency at them (Hz), as `tracked_frequency` gives it.
+    window_s : float
+        Length W of the window (s); what a code states with its limit.
+
+    Returns
+    -------
+    array, shape (n,)
+        Rate (Hz/s); NaN during the first window, and where the frequency is not known at both ends.
+
+    Raises
+    ------
+    MeasurementError
+        When the window is not above zero.
+    """
+    if not window_s > 0:
+        raise MeasurementError(f"a window of {window_s:g} s has no rate of change")
+    past = np.interp(t_s - window_s, t_s, frequency_hz, left=np.nan)
+    return (frequency_hz - past) / window_s

@@ -10,6 +10,9 @@ from pvlvrt_compliance.waveforms.container import Samples
 FUNDAMENTAL_FLOOR = 1e-3
 """Amplitude, in the unit of the signal, below which a distortion in percent of the fundamental means nothing."""
 
+_EXACT = 1e-14
+_TINY = 1e-300
+
 
 def harmonic_amplitudes(x: Samples, dt_s: float, frequency_hz: float, highest: int = 40) -> Samples:
     """Amplitudes of the mean and the harmonics over the whole cycles at the beginning of a window.
@@ -40,11 +43,12 @@ def harmonic_amplitudes(x: Samples, dt_s: float, frequency_hz: float, highest: i
     carried = min(highest, (n - 1) // 2, math.ceil(0.5 / (frequency_hz * dt_s)) - 1)
     projections = _projections(x[..., :n], turning(n, dt_s, frequency_hz), carried)
     both_signs = np.concatenate([projections[:0:-1].conj(), projections])
-    found = np.linalg.solve(_gram(n, 2 * np.pi * frequency_hz * dt_s, carried), both_signs.reshape(2 * carried + 1, -1))
-    amplitudes = np.zeros((highest + 1, *x.shape[:-1]))
-    amplitudes[: carried + 1] = 2 * np.abs(found[carried:]).reshape(carried + 1, *x.shape[:-1])
-    amplitudes[0] /= 2
-    return np.moveaxis(amplitudes, 0, -1)
+    products = _inner_products(n, 2 * np.pi * frequency_hz * dt_s, carried)
+    found = _least_squares(products, np.moveaxis(both_signs, 0, -1))
+    amplitudes = np.zeros((*x.shape[:-1], highest + 1))
+    amplitudes[..., : carried + 1] = 2 * np.abs(found[..., carried:])
+    amplitudes[..., 0] /= 2
+    return amplitudes
 
 
 def _projections(x: Samples, turned: ComplexSamples, highest: int) -> ComplexSamples:
@@ -57,17 +61,48 @@ def _projections(x: Samples, turned: ComplexSamples, highest: int) -> ComplexSam
     return sums
 
 
-def _gram(n: int, theta: float, highest: int) -> ComplexSamples:
-    """Inner products of exp(j h theta k), k = 0 .. n - 1, for h = -highest .. highest: geometric sums."""
+def _inner_products(n: int, theta: float, highest: int) -> ComplexSamples:
+    """Sum of exp(j m theta k) over k = 0 .. n - 1, for m = -2 highest .. 2 highest: geometric sums."""
     m = np.arange(-2 * highest, 2 * highest + 1)
     half = 0.5 * theta * m
     half[2 * highest] = 1.0
     ratio = np.sin(n * half) / np.sin(half)
     ratio[2 * highest] = n
-    sums = ratio * np.exp(0.5j * (n - 1) * theta * m)
-    orders = np.arange(2 * highest + 1)
-    gram: ComplexSamples = sums[2 * highest + orders[np.newaxis, :] - orders[:, np.newaxis]]
-    return gram
+    sums: ComplexSamples = ratio * np.exp(0.5j * (n - 1) * theta * m)
+    return sums
+
+
+def _least_squares(products: ComplexSamples, right: ComplexSamples) -> ComplexSamples:
+    """Solve the normal equations, whose matrix has ``products[m' - m]`` in row m and column m'; shape (..., orders).
+
+    Over whole cycles that matrix is n times the identity but for what a part of a sample leaves, so that conjugate
+    gradients end after a few steps; and it is a convolution, hence the transforms.
+    """
+    size = right.shape[-1]
+    length = 1 << int(len(products) + size).bit_length()
+    turned = np.fft.fft(products[::-1], length)
+
+    def times_matrix(c: ComplexSamples) -> ComplexSamples:
+        image: ComplexSamples = np.fft.ifft(turned * np.fft.fft(c, length))[..., size - 1 : 2 * size - 1]
+        return image
+
+    found, rest = 0 * right, right  # what is not a number stays so
+    direction, square = rest, _squares(rest)
+    enough = _EXACT**2 * square
+    for _ in range(size):
+        if not (square > enough).any():
+            break
+        image = times_matrix(direction)
+        step = square / np.maximum(np.sum(direction.conj() * image, axis=-1, keepdims=True).real, _TINY)
+        found, rest = found + step * direction, rest - step * image
+        last, square = square, _squares(rest)
+        direction = rest + square / np.maximum(last, _TINY) * direction
+    return found
+
+
+def _squares(x: ComplexSamples) -> Samples:
+    total: Samples = np.sum(x.real**2 + x.imag**2, axis=-1, keepdims=True)
+    return total
 
 
 def thd_percent(

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_phasor
+from pvlvrt_compliance.measure.fourier import ComplexSamples, Frequency, one_cycle_phasor
 from pvlvrt_compliance.space_vectors import fortescue
 from pvlvrt_compliance.waveforms.container import Samples, Segment
 
@@ -17,7 +17,7 @@ class SequencePhasors(NamedTuple):
     zero: ComplexSamples
 
 
-def sequence_phasors(segment: Segment, kind: str, frequency_hz: float) -> SequencePhasors:
+def sequence_phasors(segment: Segment, kind: str, frequency_hz: Frequency) -> SequencePhasors:
     """Positive, negative and zero sequence of the cycle that ends at each sample (Fortescue).
 
     Parameters
@@ -26,8 +26,8 @@ def sequence_phasors(segment: Segment, kind: str, frequency_hz: float) -> Sequen
         Uniformly sampled record.
     kind : str
         ``u`` or ``u0`` (V) or ``i`` (A).
-    frequency_hz : float
-        Frequency of the fundamental (Hz).
+    frequency_hz : float or array, shape (n,)
+        Frequency of the fundamental (Hz), one for all or one at each sample.
 
     Returns
     -------
@@ -42,7 +42,7 @@ def sequence_phasors(segment: Segment, kind: str, frequency_hz: float) -> Sequen
     return SequencePhasors(*fortescue(*_phase_phasors(segment, kind, frequency_hz)))
 
 
-def phase_amplitudes(segment: Segment, kind: str, frequency_hz: float) -> Samples:
+def phase_amplitudes(segment: Segment, kind: str, frequency_hz: Frequency) -> Samples:
     """Amplitude of the fundamental of each phase over the cycle that ends at each sample, shape (3, n).
 
     Parameters and errors as `sequence_phasors`.
@@ -50,5 +50,5 @@ def phase_amplitudes(segment: Segment, kind: str, frequency_hz: float) -> Sample
     return np.abs(_phase_phasors(segment, kind, frequency_hz))
 
 
-def _phase_phasors(segment: Segment, kind: str, frequency_hz: float) -> ComplexSamples:
+def _phase_phasors(segment: Segment, kind: str, frequency_hz: Frequency) -> ComplexSamples:
     return one_cycle_phasor(np.stack(segment.three_phase(kind)), segment.dt_s, frequency_hz)

@@ -5,11 +5,12 @@ import math
 import numpy as np
 
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.measure.fourier import component, components, mean
+from pvlvrt_compliance.measure.fourier import components, mean
 from pvlvrt_compliance.measure.frequency import frequency_before, fundamental_frequency
 from pvlvrt_compliance.measure.harmonics import distortion_percent, harmonic_amplitudes
 from pvlvrt_compliance.measure.power import instantaneous_power
 from pvlvrt_compliance.measure.quantities import ControllerBeliefs, Measurements, WindowMeasurements
+from pvlvrt_compliance.measure.ripple import ripple_amplitude, ripple_percent
 from pvlvrt_compliance.measure.windows import STANDARD_RULES, Span, WindowRules, standard_windows
 from pvlvrt_compliance.space_vectors import fortescue
 from pvlvrt_compliance.units import Nominal
@@ -136,7 +137,7 @@ def _powers(segment: Segment, frequency_hz: float) -> Quantities:
     return {
         "active_power_kw": mean(p, segment.dt_s, frequency_hz) / 1e3,
         "reactive_power_kvar": mean(q, segment.dt_s, frequency_hz) / 1e3,
-        "active_power_2f_kw": abs(component(p, segment.dt_s, frequency_hz, order=2)) / 1e3,
+        "active_power_2f_kw": ripple_amplitude(p, segment.dt_s, frequency_hz) / 1e3,
     }
 
 
@@ -144,9 +145,10 @@ def _dc_voltage(segment: Segment, frequency_hz: float) -> Quantities:
     if "v_dc_v" not in segment.channels:
         return {}
     v_dc = segment["v_dc_v"]
-    level = mean(v_dc, segment.dt_s, frequency_hz)
-    ripple = abs(component(v_dc, segment.dt_s, frequency_hz, detrend=True, order=2))
-    return {"dc_voltage_mean_v": level, "dc_voltage_2f_percent": 100 * ripple / level if level > 0 else None}
+    return {
+        "dc_voltage_mean_v": mean(v_dc, segment.dt_s, frequency_hz),
+        "dc_voltage_2f_percent": ripple_percent(v_dc, segment.dt_s, frequency_hz),
+    }
 
 
 def _controller(waveforms: Waveforms, frequency_hz: float, during: Span) -> ControllerBeliefs | None:

@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.measure.frequency import frequency_before, fundamental_frequency
+from pvlvrt_compliance.measure.frequency import frequency_before, fundamental_frequency, rocof_hz_s
 from pvlvrt_compliance.waveforms import Segment, Waveforms
 
 HARMONICS = {5: (0, 30, 0), 7: (30j, 0, 0), 3: (0, 0, 20)}
@@ -71,3 +71,37 @@ def test_the_record_before_an_instant(three_phase, dt_s):
     assert frequency_before(record, second.t0_s + 0.1, 50) == pytest.approx(47, abs=1e-3)
     with pytest.raises(MeasurementError, match="too short"):
         frequency_before(record, 0.01, 50)
+
+
+@given(st.floats(-20, 20), st.floats(0.02, 0.5))
+@settings(deadline=None, max_examples=30)
+def test_the_rate_of_a_ramp(dt_s, rate_hz_s, window_s):
+    """A straight line has its slope at every instant once the window has passed."""
+    t = dt_s * np.arange(20000)
+    found = rocof_hz_s(t, 50 + rate_hz_s * t, window_s)
+    assert np.isnan(found[t < window_s - 1e-9]).all()
+    assert np.abs(found[t > window_s + 1e-9] - rate_hz_s).max() < 1e-9
+
+
+def test_the_rate_of_a_step(dt_s):
+    """A step by 1 Hz is 1 Hz over the window while the window holds it; gaps and the first cycles stay open."""
+    t = dt_s * np.arange(20000)
+    frequency = np.where(t < 0.4, 50.0, 51.0)
+    frequency[t < 0.04] = np.nan
+    found = rocof_hz_s(t, frequency, 0.1)
+    assert np.isnan(found[t < 0.14]).all()
+    assert found[(t > 0.401) & (t < 0.499)] == pytest.approx(10)
+    assert found[(t > 0.141) & (t < 0.399)] == pytest.approx(0)
+    assert found[t > 0.501] == pytest.approx(0)
+
+
+def test_the_rate_across_a_change_of_step():
+    """Instants need not be evenly spaced."""
+    t = np.concatenate([np.arange(0, 1, 0.001), np.arange(1, 3, 0.01)])
+    assert rocof_hz_s(t, 50 - 2 * t, 0.25)[-1] == pytest.approx(-2)
+
+
+def test_a_window_of_nothing_has_no_rate():
+    """A window must have a length."""
+    with pytest.raises(MeasurementError, match="rate of change"):
+        rocof_hz_s(np.arange(3.0), np.ones(3), 0)
