@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.measure.fourier import one_cycle_mean
+from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_mean
 from pvlvrt_compliance.measure.frequency import frequency_before
 from pvlvrt_compliance.measure.power import (
     Power,
@@ -19,11 +19,13 @@ from pvlvrt_compliance.measure.power import (
 )
 from pvlvrt_compliance.measure.quantities import Measurements, WindowMeasurements
 from pvlvrt_compliance.measure.sequences import phase_amplitudes, sequence_phasors
+from pvlvrt_compliance.measure.tracking import tracked_frequency
 from pvlvrt_compliance.measure.windows import Span, WindowRules, standard_windows
 from pvlvrt_compliance.profile.procedure import Detection
 from pvlvrt_compliance.profile.requirements import Requirements
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import asked_sequences_pu
+from pvlvrt_compliance.space_vectors import phases
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
 
@@ -96,6 +98,21 @@ class Evidence:
     def voltage_negative_pu(self) -> Samples:
         """One-cycle V- at the terminals, shape (n,)."""
         return self._sequence_pu("u", 1)
+
+    @cached_property
+    def voltage_phasors_pu(self) -> ComplexSamples:
+        """One-cycle phasors of the phase-to-neutral voltages at the terminals, shape (3, n)."""
+        return self._phasors_pu("u")
+
+    @cached_property
+    def no_load_phasors_pu(self) -> ComplexSamples | None:
+        """The same of the source without the inverter's current, None in a record that has no such voltages."""
+        return self._phasors_pu("u0") if "u0_a_v" in self.waveforms.names else None
+
+    @cached_property
+    def tracked_frequency_hz(self) -> Samples:
+        """Frequency of the positive sequence as it changes, NaN in the first two cycles, shape (n,)."""
+        return self._joined(lambda segment: tracked_frequency(segment, self.nominal.frequency_hz))
 
     @cached_property
     def current_phase_pu(self) -> Samples:
@@ -263,6 +280,13 @@ class Evidence:
             return np.stack(split(u, i)) / self.nominal.phase_current_peak_a
 
         return SequenceCurrent(*self._joined(in_segment))
+
+    def _phasors_pu(self, kind: str) -> ComplexSamples:
+        def of_phases(segment: Segment) -> ComplexSamples:
+            return np.stack(phases(*sequence_phasors(segment, kind, self.frequency_hz)))
+
+        found: ComplexSamples = np.concatenate([of_phases(segment) for segment in self.waveforms], axis=-1)
+        return found / self.nominal.phase_voltage_peak_v
 
     def _cycle_mean(self, segment: Segment, x: Samples) -> Samples:
         return one_cycle_mean(x, segment.dt_s, self.frequency_hz)

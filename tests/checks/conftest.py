@@ -14,6 +14,7 @@ from pvlvrt_compliance.profile.procedure import Detection
 from pvlvrt_compliance.profile.provenance import Number
 from pvlvrt_compliance.profile.requirements import Requirement, Requirements
 from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.scenario.timeline import entries
 from pvlvrt_compliance.space_vectors import fortescue, phases
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Segment, Waveforms
@@ -30,9 +31,10 @@ class Bench:
     """A record to be judged; by default a flawless inverter's through the sag of the test.
 
     Currents are balanced; the powers asked for come out as means at the terminals. Times count from the start of the
-    sag, ``recovers_after_s`` and the arguments of ``p_after_kw`` and ``q_after_kvar`` from clearing.
-    ``negative_reactive_pu`` is added during the sag, positive where it lowers V-. ``healthy_pu`` scales the voltage
-    outside of the sag.
+    sag, ``recovers_after_s`` and the arguments of ``p_after_kw`` and ``q_after_kvar`` from clearing. ``p_kw`` and
+    ``q_kvar`` take the place of all other powers, ``flows`` is a factor on the current. ``negative_reactive_pu`` is
+    added during the sag, positive where it lowers V-. ``healthy_pu`` scales the voltage outside of the sag. Events of
+    the scenario move the voltages as they say.
     """
 
     profile: Profile
@@ -53,6 +55,9 @@ class Bench:
     disconnected_after_s: float | None = None
     blocked_after_s: float | None = None
     extra_current_pu: Callable[[np.ndarray], np.ndarray] | None = None
+    p_kw: Callable[[np.ndarray], np.ndarray] | None = None
+    q_kvar: Callable[[np.ndarray], np.ndarray] | None = None
+    flows: Callable[[np.ndarray], np.ndarray] | None = None
     without: tuple[str, ...] = ()
     spoiled: dict[str, float] = field(default_factory=dict)
     nominal: Nominal = field(default_factory=Nominal)
@@ -62,10 +67,11 @@ class Bench:
         scenario = self.test.scenario
         t = DT_S * np.arange(int(scenario.end_s / DT_S))
         in_sag = (t >= scenario.start_s) & (t < scenario.clear_s)
-        angle = 2 * np.pi * scenario.frequency_hz * (t - scenario.start_s) + np.radians(scenario.point_on_wave_deg)
-        turning = np.exp(1j * angle)
-        u0 = self._voltage(self.no_load_sag or self.sag or scenario.sag, in_sag)
-        u = self._voltage(self.sag or scenario.sag, in_sag)
+        asked, turning = self._asked(t)
+        u0, u = (
+            asked if sag is None else self._voltage(sag, in_sag) for sag in (self.no_load_sag or self.sag, self.sag)
+        )
+        u = [np.where(in_sag, 1.0, self.healthy_pu) * x for x in u]
         i = self._current(t, u, in_sag)
         channels = {f"u_{p}_v": (x * turning).real for p, x in zip("abc", u, strict=True)}
         channels |= {f"u0_{p}_v": (x * turning).real for p, x in zip("abc", u0, strict=True)}
@@ -90,10 +96,24 @@ class Bench:
         """Judge the record and pick one verdict."""
         return next(check for check in self.result().checks if check.check == kind)
 
+    def _asked(self, t: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
+        """Phasors of the source as asked for, and the turning of phase a's healthy fundamental."""
+        table = entries(self.test.scenario)
+        begin = np.array([entry.t_s for entry in table])
+        here = np.searchsorted(begin, t, side="right") - 1
+        dt = t - begin[here]
+        angle, f, rate = (
+            np.array([getattr(entry, name) for entry in table])[here]
+            for name in ("angle_rad", "frequency_hz", "rocof_hz_s")
+        )
+        at, slope = (np.array([getattr(entry, n) for entry in table])[here].T for n in ("sequences_pu", "slope_pu_s"))
+        phasors = phases(*(self.nominal.phase_voltage_peak_v * (at + slope * dt)))
+        return list(phasors), np.exp(1j * (angle + 2 * np.pi * (f * dt + 0.5 * rate * dt**2)))
+
     def _voltage(self, sag: Sag, in_sag: np.ndarray) -> list[np.ndarray]:
         healthy = Sag(depth=0).phasors_pu()
         peak = self.nominal.phase_voltage_peak_v
-        return [peak * np.where(in_sag, s, self.healthy_pu * h) for s, h in zip(sag.phasors_pu(), healthy, strict=True)]
+        return [peak * np.where(in_sag, s, h) for s, h in zip(sag.phasors_pu(), healthy, strict=True)]
 
     def _current(self, t: np.ndarray, u: list[np.ndarray], in_sag: np.ndarray) -> list[np.ndarray]:
         """Balanced positive-sequence phasors that carry the powers asked for: i = (2/3) conj(S / u+) a phase."""
@@ -113,11 +133,18 @@ class Bench:
         p = np.where(in_sag, at(self.p_sag_kw, t - scenario.start_s), p)
         p = np.where((since_clearing >= 0) & (since_clearing < self.recovers_after_s), 0.0, p)
         q = np.where(t < scenario.start_s, self.q_before_kvar, at(self.q_after_kvar, since_clearing))
-        return p, np.where(in_sag, at(self.q_sag_kvar, t - scenario.start_s), q)
+        q = np.where(in_sag, at(self.q_sag_kvar, t - scenario.start_s), q)
+        since_start = t - scenario.start_s
+        return (
+            p if self.p_kw is None else self.p_kw(since_start),
+            q if self.q_kvar is None else self.q_kvar(since_start),
+        )
 
     def _feeding(self, t: np.ndarray) -> np.ndarray:
         stops = [s for s in (self.disconnected_after_s, self.blocked_after_s) if s is not None]
-        return (t < self.test.scenario.start_s + min(stops, default=np.inf)).astype(float)
+        since_start = t - self.test.scenario.start_s
+        factor = 1.0 if self.flows is None else self.flows(since_start)
+        return factor * (since_start < min(stops, default=np.inf))
 
 
 def at(level: Level, t: np.ndarray) -> np.ndarray:
