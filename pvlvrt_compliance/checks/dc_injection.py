@@ -21,7 +21,7 @@ def check_dc_injection(requirement: DcInjection, evidence: Evidence) -> Check:
         When the window is shorter than that, or a current cannot be measured.
     """
     window = steady_currents(evidence)[0]
-    found = np.abs(dc_component(window.current, window.dt_s, evidence.frequency_hz))
+    found = np.abs(dc_component(window.current, window.dt_s, window.frequency_hz))
     phase = int(found.argmax())
     measured, limit = 100 * float(found[phase]), requirement.limit_percent.value
     return judged(

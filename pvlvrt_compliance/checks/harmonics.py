@@ -42,13 +42,12 @@ def check_harmonics(requirement: Harmonics, evidence: Evidence) -> Check:
 
 
 def _parts(requirement: Harmonics, evidence: Evidence, window: SteadyWindow) -> Iterator[Part]:
-    frequency_hz = evidence.frequency_hz
-    found = spectrum(window.current, window.dt_s, frequency_hz, evidence.nominal.frequency_hz)
+    found = spectrum(window.current, window.dt_s, window.frequency_hz, evidence.nominal.frequency_hz)
     subgroups = harmonic_subgroups(found)
     if requirement.orders is not None:
         yield from _orders(requirement.orders, subgroups, window)
     if requirement.total_percent is not None:
-        total = trd(window.current, window.dt_s, frequency_hz, rated_rms=1.0)
+        total = trd(window.current, window.dt_s, window.frequency_hz, rated_rms=1.0)
         yield _worst_phase("total rated-current distortion", total, requirement.total_percent, window)
     if requirement.thd_percent is not None:
         if subgroups[:, 1].min() < LEAST_FUNDAMENTAL:

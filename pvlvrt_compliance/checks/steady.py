@@ -6,6 +6,7 @@ import numpy as np
 
 from pvlvrt_compliance.checks.evidence import Evidence, require_finite
 from pvlvrt_compliance.measure.groups import window_cycles
+from pvlvrt_compliance.measure.quantities import WindowMeasurements
 from pvlvrt_compliance.waveforms.container import Samples
 
 
@@ -15,6 +16,7 @@ class SteadyWindow(NamedTuple):
     start_s: float
     end_s: float
     dt_s: float
+    frequency_hz: float
     current: Samples
     """Phase currents in units of the rated current's rms, shape (3, n)."""
 
@@ -22,8 +24,8 @@ class SteadyWindow(NamedTuple):
 def steady_currents(evidence: Evidence) -> list[SteadyWindow]:
     """Windows that end with the one before the sag and, where the record is long enough, with the one at its end.
 
-    They are counted in cycles of the measured frequency from their end backwards: a window of 0.2 s holds eleven cycles
-    of 59.8 Hz and a part of the twelfth.
+    They are counted in cycles of their own frequency from their end backwards: a window of 0.2 s holds eleven cycles
+    of 59.8 Hz and a part of the twelfth, and a disturbance may leave another frequency than it found.
 
     Raises
     ------
@@ -31,14 +33,15 @@ def steady_currents(evidence: Evidence) -> list[SteadyWindow]:
         When the record before the sag holds fewer cycles, or a current is missing or not finite.
     """
     before, after = evidence.before(), evidence.measurements.after
-    windows = [_last_cycles(evidence, before.end_s)]
-    return windows if after is None else [*windows, _last_cycles(evidence, after.end_s)]
+    windows = [_last_cycles(evidence, before)]
+    return windows if after is None else [*windows, _last_cycles(evidence, after)]
 
 
-def _last_cycles(evidence: Evidence, end_s: float) -> SteadyWindow:
+def _last_cycles(evidence: Evidence, window: WindowMeasurements) -> SteadyWindow:
     nominal = evidence.nominal
-    start_s = end_s - window_cycles(nominal.frequency_hz) / evidence.frequency_hz
-    segment = evidence.waveforms.window(start_s, end_s)
+    frequency_hz = window.frequency_hz or evidence.frequency_hz
+    start_s = window.end_s - window_cycles(nominal.frequency_hz) / frequency_hz
+    segment = evidence.waveforms.window(start_s, window.end_s)
     current = np.stack(segment.three_phase("i")) / (nominal.phase_current_peak_a / np.sqrt(2))
     require_finite(current, "the current", segment.t_s)
-    return SteadyWindow(start_s, end_s, segment.dt_s, current)
+    return SteadyWindow(start_s, window.end_s, segment.dt_s, frequency_hz, current)

@@ -38,16 +38,18 @@ class ReactiveSupport(Requirement):
 class ReactiveCurrent(Requirement):
     """Additional reactive current of a sequence in proportion to the change of its voltage: delta i = K f(delta u).
 
-    With the dead band d, f is delta u (``none``), what exceeds d (``shift``), or delta u once it exceeds d (``step``).
-    Demands beyond ``limit_pu`` are clipped, both sequences in the same proportion. A test may set another K.
+    Positive are a fall of V+, a rise of V-, and the current that counters either. With the dead band d, f is delta u
+    (``none``), what exceeds d (``shift``), or delta u once it exceeds d (``step``). Where the reactive currents of both
+    sequences, with what flowed before, add up to more than ``limit_pu``, both are clipped in the same proportion. A
+    test may set another K.
     """
 
     k: Positive
     dead_band_pu: NotNegative
     dead_band_mode: Choice[DeadBandMode]
     reference: Choice[Reference] = Field(description="what delta u counts from")
-    tolerance_plus_pu: NotNegative
-    tolerance_minus_pu: NotNegative
+    tolerance_plus_pu: NotNegative = Field(description="more support than demanded")
+    tolerance_minus_pu: NotNegative = Field(description="less support than demanded")
     limit_pu: Positive = Field(description="total current up to which support is demanded")
     blocking_allowed_below_pu: NotNegative = Field(description="V+ below which a blocked bridge is let off")
 
@@ -56,7 +58,8 @@ class SupportDynamics(Requirement):
     """How fast the additional reactive current of the positive sequence comes and settles.
 
     Activation: it has moved by ``activation_pu``. Response: it has reached ``response_fraction`` of its final value.
-    Both from the start of the sag. Settling: from activation to the last entry into the band around the final value.
+    Both from the first V+ beyond the thresholds of detection; without those, from the start of the sag. Settling: from
+    activation to the last entry into the band around the final value.
     """
 
     activation_pu: Positive
@@ -70,7 +73,7 @@ class SupportDynamics(Requirement):
 
 
 class ReactiveRatio(Requirement):
-    """Share of the reactive current in the total current during a sag, at least a curve over the voltage."""
+    """Share of the reactive current in the total current of the positive sequence, at least a curve over V+."""
 
     curve: RatioCurve
     within_s: NotNegative = Field(description="from the start of the sag")

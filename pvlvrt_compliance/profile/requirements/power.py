@@ -8,7 +8,7 @@ from pvlvrt_compliance.profile.tables import RecoveryTable
 
 
 class ActivePowerRecovery(Requirement):
-    """Active power after clearing, by the depth of the sag; times count from the voltage's return."""
+    """Active power after clearing, by the mean V+ of the sag; times count from the voltage's return."""
 
     return_pu: Positive = Field(description="V+ at and above which the voltage has returned")
     first_fraction: Fraction = Field(description="of the active power before the sag, to be reached first")
@@ -20,7 +20,7 @@ class ConsumptionZones(Frozen):
     """Limits on what the inverter may take from the grid during a fault; what is left out is not limited.
 
     Zone A is the first ``transient_s`` of the fault, C as long after clearing, B the rest of the fault. Powers are
-    means over one cycle in fractions of rated power; energies are in seconds of rated power.
+    means over one cycle within the zone, in fractions of rated power; energies are in seconds of rated power.
     """
 
     transient_s: Positive
@@ -38,7 +38,7 @@ class Consumption(Requirement):
     """Active and reactive power taken from the grid, by zones of the fault."""
 
     balanced: ConsumptionZones
-    unbalanced: ConsumptionZones | None = None
+    unbalanced: ConsumptionZones | None = Field(default=None, description="none: an unbalanced fault is not judged")
     unbalanced_from_pu: Positive = Field(description="V- from which a fault is unbalanced")
 
 
