@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_mean
 from pvlvrt_compliance.measure.frequency import frequency_before
-from pvlvrt_compliance.measure.power import instantaneous_power
+from pvlvrt_compliance.measure.power import VOLTAGE_FLOOR_V, instantaneous_power, sequence_current
 from pvlvrt_compliance.measure.quantities import Measurements, WindowMeasurements
 from pvlvrt_compliance.measure.sequences import phase_amplitudes, sequence_phasors
 from pvlvrt_compliance.measure.tracking import tracked_frequency
@@ -109,6 +109,14 @@ class Evidence:
         """One-cycle fundamental amplitudes of the phase currents, shape (3, n)."""
         base = self.nominal.phase_current_peak_a
         return self._joined(lambda segment: phase_amplitudes(segment, "i", self.frequency_hz) / base)
+
+    @cached_property
+    def reactive_current_pu(self) -> Samples:
+        """One-cycle reactive current of the positive sequence, above 0 when it delivers reactive power, shape (n,).
+
+        0 where there is no voltage for it to be measured along.
+        """
+        return self._joined(self._reactive_current_a) / self.nominal.phase_current_peak_a
 
     @cached_property
     def current_pu(self) -> Samples:
@@ -236,6 +244,10 @@ class Evidence:
     def _sequence_pu(self, kind: str, index: int) -> Samples:
         base = self.nominal.phase_voltage_peak_v
         return self._joined(lambda segment: np.abs(sequence_phasors(segment, kind, self.frequency_hz)[index]) / base)
+
+    def _reactive_current_a(self, segment: Segment) -> Samples:
+        u, i = (sequence_phasors(segment, kind, self.frequency_hz).positive for kind in "ui")
+        return np.where(np.abs(u) < VOLTAGE_FLOOR_V, 0.0, sequence_current(u, i).reactive)
 
     def _phasors_pu(self, kind: str) -> ComplexSamples:
         def of_phases(segment: Segment) -> ComplexSamples:
