@@ -4,7 +4,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from pvlvrt_compliance.checks.evidence import Evidence, Mask
+from pvlvrt_compliance.checks.evidence import Evidence
+from pvlvrt_compliance.checks.series import Mask
+from pvlvrt_compliance.scenario.events import FurtherSag, PhaseJump
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import Entry, asked_sequences_pu, entries
 from pvlvrt_compliance.waveforms.container import Samples
@@ -19,6 +21,15 @@ _NORMAL_PU = (0.9, 1.1)
 def voltage_steps_s(scenario: Scenario) -> tuple[float, ...]:
     """Instants at which the voltage asked for jumps, or begins or ends to move (s, from the start of the record)."""
     return tuple(after.t_s for before, after in pairwise(entries(scenario)) if _moves(before, after))
+
+
+def angle_steps_s(scenario: Scenario) -> tuple[float, ...]:
+    """Instants at which an angle of the voltage asked for is meant to jump (s, from the start of the record)."""
+    jumps = [event.t_s for event in scenario.events if isinstance(event, PhaseJump) and event.angle_deg]
+    sags = [(0.0, scenario.duration_s, scenario.sag)]
+    sags += [(event.t_s, event.duration_s, event.sag) for event in scenario.events if isinstance(event, FurtherSag)]
+    jumps += [t for begin_s, lasts_s, sag in sags if sag.angle_deg for t in (begin_s, begin_s + lasts_s)]
+    return tuple(sorted({scenario.start_s + t for t in jumps}))
 
 
 def last_return_s(scenario: Scenario) -> float:

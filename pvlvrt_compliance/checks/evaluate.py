@@ -5,7 +5,6 @@ from collections.abc import Iterable
 from pvlvrt_compliance.checks.evidence import Evidence, NotApplicable
 from pvlvrt_compliance.checks.registry import find_judge
 from pvlvrt_compliance.checks.results import Check, ProfileSummary, Status, TestResult, worst
-from pvlvrt_compliance.checks.ride_through import KIND as RIDE_THROUGH
 from pvlvrt_compliance.checks.validity import reason_not_to_count
 from pvlvrt_compliance.checks.verdicts import unjudged
 from pvlvrt_compliance.errors import MeasurementError
@@ -17,6 +16,9 @@ from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.requirements import Requirement
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Waveforms
+
+CONNECTION_KINDS = ("ride_through", "frequency_ride_through", "phase_jump_ride_through")
+"""Kinds that judge whether the inverter may stop; all others have nothing to say of one that did."""
 
 REPEATED_RUNS = "repeated_runs"
 """Kind that judges all runs of a row together, not one record."""
@@ -117,7 +119,7 @@ def _judge(kind: str, requirement: Requirement, evidence: Evidence) -> Check:
         reason = f"no installed package has a check for the requirement {kind!r}"
         return unjudged(kind, requirement, Status.NOT_EVALUATED, reason)
     try:
-        if kind != RIDE_THROUGH and (stop := _stop(evidence)) is not None:
+        if kind not in CONNECTION_KINDS and (stop := _stop(evidence)) is not None:
             return unjudged(kind, requirement, Status.NOT_APPLICABLE, stop)
         return judge(requirement, evidence)
     except NotApplicable as reason:

@@ -1,37 +1,18 @@
 """What a check sees of one test: the record, its measurements and the series made from it."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pvlvrt_compliance.checks.series import Series
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_mean
-from pvlvrt_compliance.measure.frequency import frequency_before
-from pvlvrt_compliance.measure.power import (
-    Power,
-    SequenceCurrent,
-    instantaneous_power,
-    negative_sequence_current,
-    sequence_current,
-)
 from pvlvrt_compliance.measure.quantities import Measurements, WindowMeasurements
-from pvlvrt_compliance.measure.sequences import phase_amplitudes, sequence_phasors
-from pvlvrt_compliance.measure.tracking import tracked_frequency
 from pvlvrt_compliance.measure.windows import Span, WindowRules, standard_windows
 from pvlvrt_compliance.profile.procedure import Detection
 from pvlvrt_compliance.profile.requirements import Requirements
-from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import asked_sequences_pu
-from pvlvrt_compliance.space_vectors import phases
-from pvlvrt_compliance.units import Nominal
-from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
-
-Mask = NDArray[np.bool_]
-
-_SAME_INSTANT_S = 1e-9
+from pvlvrt_compliance.waveforms.container import Samples
 
 
 class NotApplicable(Exception):  # noqa: N818 - it is a verdict, not an error
@@ -39,10 +20,8 @@ class NotApplicable(Exception):  # noqa: N818 - it is a verdict, not an error
 
 
 @dataclass(frozen=True, eq=False)
-class Evidence:
-    """One record with what is known about its test.
-
-    Series have one value a sample of the record, all segments joined, and are NaN in the first cycle of a segment.
+class Evidence(Series):
+    """One record and its series, with what is known about its test.
 
     Parameters
     ----------
@@ -68,9 +47,6 @@ class Evidence:
         All that the profile demands, for checks that depend on each other's demands.
     """
 
-    waveforms: Waveforms
-    nominal: Nominal
-    scenario: Scenario
     available_power_w: float
     measurements: Measurements
     rules: WindowRules
@@ -78,82 +54,6 @@ class Evidence:
     k_factor: float | None = None
     detection: Detection | None = None
     requirements: Requirements | None = None
-
-    @cached_property
-    def frequency_hz(self) -> float:
-        """Fundamental frequency, measured before the sag (Hz)."""
-        return frequency_before(self.waveforms, self.scenario.start_s, self.nominal.frequency_hz)
-
-    @cached_property
-    def t_s(self) -> Samples:
-        """Time of each sample (s), shape (n,)."""
-        return self._joined(lambda segment: segment.t_s)
-
-    @cached_property
-    def voltage_positive_pu(self) -> Samples:
-        """One-cycle V+ at the terminals, shape (n,)."""
-        return self._sequence_pu("u", 0)
-
-    @cached_property
-    def voltage_negative_pu(self) -> Samples:
-        """One-cycle V- at the terminals, shape (n,)."""
-        return self._sequence_pu("u", 1)
-
-    @cached_property
-    def voltage_phasors_pu(self) -> ComplexSamples:
-        """One-cycle phasors of the phase-to-neutral voltages at the terminals, shape (3, n)."""
-        return self._phasors_pu("u")
-
-    @cached_property
-    def no_load_phasors_pu(self) -> ComplexSamples | None:
-        """The same of the source without the inverter's current, None in a record that has no such voltages."""
-        return self._phasors_pu("u0") if "u0_a_v" in self.waveforms.names else None
-
-    @cached_property
-    def tracked_frequency_hz(self) -> Samples:
-        """Frequency of the positive sequence as it changes, NaN in the first two cycles, shape (n,)."""
-        return self._joined(lambda segment: tracked_frequency(segment, self.nominal.frequency_hz))
-
-    @cached_property
-    def current_phase_pu(self) -> Samples:
-        """One-cycle fundamental amplitudes of the phase currents, shape (3, n)."""
-        base = self.nominal.phase_current_peak_a
-        return self._joined(lambda segment: phase_amplitudes(segment, "i", self.frequency_hz) / base)
-
-    @cached_property
-    def current_pu(self) -> Samples:
-        """Instantaneous phase currents, shape (3, n)."""
-        return self._joined(lambda segment: np.stack(segment.three_phase("i"))) / self.nominal.phase_current_peak_a
-
-    @cached_property
-    def current_positive_pu(self) -> SequenceCurrent:
-        """One-cycle active and reactive current of the positive sequence, shape (n,) each; NaN without voltage."""
-        return self._sequence_current_pu(0, sequence_current)
-
-    @cached_property
-    def current_negative_pu(self) -> SequenceCurrent:
-        """One-cycle active and reactive current of the negative sequence, shape (n,) each; NaN without voltage."""
-        return self._sequence_current_pu(1, negative_sequence_current)
-
-    @cached_property
-    def active_power_kw(self) -> Samples:
-        """One-cycle mean of P, shape (n,)."""
-        return self._joined(lambda segment: self._cycle_mean(segment, instantaneous_power(segment).p)) / 1e3
-
-    @cached_property
-    def reactive_power_kvar(self) -> Samples:
-        """One-cycle mean of Q, shape (n,)."""
-        return self._joined(lambda segment: self._cycle_mean(segment, instantaneous_power(segment).q)) / 1e3
-
-    @cached_property
-    def instantaneous_kva(self) -> Power:
-        """Instantaneous P (kW) and Q (kvar), shape (n,) each."""
-        return Power(*self._joined(lambda segment: np.stack(instantaneous_power(segment))) / 1e3)
-
-    @cached_property
-    def dc_voltage_v(self) -> Samples:
-        """DC voltage (V), shape (n,)."""
-        return self._joined(lambda segment: segment["v_dc_v"])
 
     @cached_property
     def disconnected_at_s(self) -> float | None:
@@ -164,7 +64,7 @@ class Evidence:
         MeasurementError
             When the record does not say, or not everywhere.
         """
-        connected = require_finite(self._joined(lambda segment: segment["connected"]), "connected", self.t_s)
+        connected = require_finite(self.joined(lambda segment: segment["connected"]), "connected", self.t_s)
         opened = connected < 0.5
         return float(self.t_s[opened.argmax()]) if opened.any() else None
 
@@ -198,7 +98,7 @@ class Evidence:
         if not inside.any():
             return None
         positive, negative = (
-            require_finite(self._sequence_pu("u0", index)[inside], "u0", self.t_s[inside]) for index in (0, 1)
+            require_finite(self.sequence_pu("u0", index)[inside], "u0", self.t_s[inside]) for index in (0, 1)
         )
         return float(positive.mean()), float(negative.mean())
 
@@ -264,35 +164,6 @@ class Evidence:
             raise NotApplicable(f"the sag of {self.scenario.duration_s:.3f} s leaves no whole cycle to measure")
         self.waveforms.window(*self.during_span)  # raises with the reason where there is one
         raise MeasurementError("the window during the sag cannot be measured")
-
-    def between(self, start_s: float, end_s: float) -> Mask:
-        """Mask of the samples from one instant to another, both included, shape (n,)."""
-        mask: Mask = (self.t_s >= start_s - _SAME_INSTANT_S) & (self.t_s <= end_s + _SAME_INSTANT_S)
-        return mask
-
-    def _sequence_pu(self, kind: str, index: int) -> Samples:
-        base = self.nominal.phase_voltage_peak_v
-        return self._joined(lambda segment: np.abs(sequence_phasors(segment, kind, self.frequency_hz)[index]) / base)
-
-    def _sequence_current_pu(self, index: int, split: Callable[..., SequenceCurrent]) -> SequenceCurrent:
-        def in_segment(segment: Segment) -> Samples:
-            u, i = (sequence_phasors(segment, kind, self.frequency_hz)[index] for kind in "ui")
-            return np.stack(split(u, i)) / self.nominal.phase_current_peak_a
-
-        return SequenceCurrent(*self._joined(in_segment))
-
-    def _phasors_pu(self, kind: str) -> ComplexSamples:
-        def of_phases(segment: Segment) -> ComplexSamples:
-            return np.stack(phases(*sequence_phasors(segment, kind, self.frequency_hz)))
-
-        found: ComplexSamples = np.concatenate([of_phases(segment) for segment in self.waveforms], axis=-1)
-        return found / self.nominal.phase_voltage_peak_v
-
-    def _cycle_mean(self, segment: Segment, x: Samples) -> Samples:
-        return one_cycle_mean(x, segment.dt_s, self.frequency_hz)
-
-    def _joined(self, series: Callable[[Segment], Samples]) -> Samples:
-        return np.concatenate([series(segment) for segment in self.waveforms], axis=-1)
 
 
 def require_finite(values: Samples, what: str, t_s: Samples) -> Samples:

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pvlvrt_compliance.checks.evidence import Mask
+from pvlvrt_compliance.checks.series import Mask
 from pvlvrt_compliance.waveforms.container import Samples
 
 

@@ -7,8 +7,9 @@ import numpy as np
 
 from pvlvrt_compliance.checks.disturbances import SETTLED_CYCLES, settled_pu, voltage_steps_s
 from pvlvrt_compliance.checks.envelopes import Demand, Limit
-from pvlvrt_compliance.checks.evidence import Evidence, Mask, require_finite
+from pvlvrt_compliance.checks.evidence import Evidence, require_finite
 from pvlvrt_compliance.checks.excursions import Excursion, excursions, inside_of, time_spent_s
+from pvlvrt_compliance.checks.series import Mask
 from pvlvrt_compliance.checks.voltage_quantities import NAMES, voltage_quantity_pu
 from pvlvrt_compliance.profile.curves import LARGEST_LEVEL_PU, Side
 from pvlvrt_compliance.profile.regions import LinearTime, Region, RegionTable

@@ -4,10 +4,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from pvlvrt_compliance.checks.evidence import Evidence, Mask, require_finite
+from pvlvrt_compliance.checks.evidence import Evidence, require_finite
 from pvlvrt_compliance.checks.excursions import Excursion, excursions, inside_of
 from pvlvrt_compliance.checks.regions import Visit
 from pvlvrt_compliance.checks.results import Check
+from pvlvrt_compliance.checks.series import Mask
 from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
 from pvlvrt_compliance.profile.regions import CEASE, RegionTable
 from pvlvrt_compliance.profile.requirements import RideThrough
@@ -22,7 +23,8 @@ def responses(
 
     Momentary cessation and ceasing: no current from ``respond_s`` after entering until the voltage leaves the region.
     Tripping: the breaker open ``respond_s`` after entering. Mandatory operation: current at all times but for one
-    cycle, until the inverter may let go. A stretch that ends before ``respond_s`` is over asks for nothing.
+    cycle, until the inverter may let go; only a failure gives a verdict. A stretch that ends before ``respond_s`` is
+    over asks for nothing.
 
     Raises
     ------
@@ -88,7 +90,8 @@ def _longest_without_current(
         return None
     stretches = excursions(~_flowing(here, evidence), evidence.t_s[here])
     longest_s = max((gap.end_s - gap.begin_s for gap in stretches), default=0.0)
-    return longest_s, 1 / evidence.frequency_hz, f"{longest_s:.3f} s without current"
+    allowed_s = 1 / evidence.frequency_hz
+    return (longest_s, allowed_s, f"{longest_s:.3f} s without current") if longest_s > allowed_s else None
 
 
 def _opened_s(evidence: Evidence) -> float | None:

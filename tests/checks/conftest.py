@@ -203,3 +203,21 @@ def bench(iec: Profile) -> Callable[..., Bench]:
         return Bench(profile, profile.ad_hoc_test(sag, duration_s, **scenario), **settings)
 
     return make
+
+
+def _marked(item: Any) -> Any:
+    """Numbers of a requirement with a mark each; tables carry their own."""
+    if isinstance(item, dict):
+        return item if "confidence" in item else {key: _marked(part) for key, part in item.items()}
+    return item if isinstance(item, str) else {"value": item, "confidence": "chosen", "source": "a test"}
+
+
+@pytest.fixture
+def profile_with(spain: Profile) -> Callable[[str, dict[str, Any]], Profile]:
+    """Make a profile of one requirement alone; plain numbers get a mark."""
+
+    def make(kind: str, requirement: dict[str, Any]) -> Profile:
+        whole = spain.model_dump(by_alias=True) | {"requirements": {kind: _marked(requirement)}, "tests": ()}
+        return Profile.model_validate(whole)
+
+    return make

@@ -1,0 +1,164 @@
+"""Series that several checks need, each made from the record once."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_mean
+from pvlvrt_compliance.measure.frequency import frequency_before
+from pvlvrt_compliance.measure.power import (
+    VOLTAGE_FLOOR_V,
+    Power,
+    SequenceCurrent,
+    instantaneous_power,
+    negative_sequence_current,
+    sequence_current,
+)
+from pvlvrt_compliance.measure.sequences import phase_amplitudes, sequence_phasors
+from pvlvrt_compliance.measure.tracking import tracked_frequency
+from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.space_vectors import phases
+from pvlvrt_compliance.units import Nominal
+from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
+
+Mask = NDArray[np.bool_]
+
+_SAME_INSTANT_S = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """Series of one record: one value a sample, all segments joined, NaN in the first cycle of a segment.
+
+    Parameters
+    ----------
+    waveforms : Waveforms
+        The record.
+    nominal : Nominal
+        Base of the per-unit values.
+    scenario : Scenario
+        What was asked of the grid; its times count from the start of the record.
+    """
+
+    waveforms: Waveforms
+    nominal: Nominal
+    scenario: Scenario
+
+    @cached_property
+    def frequency_hz(self) -> float:
+        """Fundamental frequency, measured before the sag (Hz)."""
+        return frequency_before(self.waveforms, self.scenario.start_s, self.nominal.frequency_hz)
+
+    @cached_property
+    def t_s(self) -> Samples:
+        """Time of each sample (s), shape (n,)."""
+        return self.joined(lambda segment: segment.t_s)
+
+    @cached_property
+    def voltage_positive_pu(self) -> Samples:
+        """One-cycle V+ at the terminals, shape (n,)."""
+        return self.sequence_pu("u", 0)
+
+    @cached_property
+    def voltage_negative_pu(self) -> Samples:
+        """One-cycle V- at the terminals, shape (n,)."""
+        return self.sequence_pu("u", 1)
+
+    @cached_property
+    def voltage_phasors_pu(self) -> ComplexSamples:
+        """One-cycle phasors of the phase-to-neutral voltages at the terminals, shape (3, n)."""
+        return self._phasors_pu("u")
+
+    @cached_property
+    def no_load_phasors_pu(self) -> ComplexSamples | None:
+        """The same of the source without the inverter's current, None in a record that has no such voltages."""
+        return self._phasors_pu("u0") if "u0_a_v" in self.waveforms.names else None
+
+    @cached_property
+    def tracked_frequency_hz(self) -> Samples:
+        """Frequency of the positive sequence as it changes, NaN in the first two cycles, shape (n,)."""
+        return self.joined(lambda segment: tracked_frequency(segment, self.nominal.frequency_hz))
+
+    @cached_property
+    def current_phase_pu(self) -> Samples:
+        """One-cycle fundamental amplitudes of the phase currents, shape (3, n)."""
+        base = self.nominal.phase_current_peak_a
+        return self.joined(lambda segment: phase_amplitudes(segment, "i", self.frequency_hz) / base)
+
+    @cached_property
+    def reactive_current_pu(self) -> Samples:
+        """One-cycle reactive current of the positive sequence, above 0 when it delivers reactive power, shape (n,).
+
+        0 where there is no voltage for it to be measured along.
+        """
+        no_voltage = self.voltage_positive_pu * self.nominal.phase_voltage_peak_v < VOLTAGE_FLOOR_V
+        return np.where(no_voltage, 0.0, self.current_positive_pu.reactive)
+
+    @cached_property
+    def current_pu(self) -> Samples:
+        """Instantaneous phase currents, shape (3, n)."""
+        return self.joined(lambda segment: np.stack(segment.three_phase("i"))) / self.nominal.phase_current_peak_a
+
+    @cached_property
+    def current_positive_pu(self) -> SequenceCurrent:
+        """One-cycle active and reactive current of the positive sequence, shape (n,) each; NaN without voltage."""
+        return self._sequence_current_pu(0, sequence_current)
+
+    @cached_property
+    def current_negative_pu(self) -> SequenceCurrent:
+        """One-cycle active and reactive current of the negative sequence, shape (n,) each; NaN without voltage."""
+        return self._sequence_current_pu(1, negative_sequence_current)
+
+    @cached_property
+    def active_power_kw(self) -> Samples:
+        """One-cycle mean of P, shape (n,)."""
+        return self.joined(lambda segment: self._cycle_mean(segment, instantaneous_power(segment).p)) / 1e3
+
+    @cached_property
+    def reactive_power_kvar(self) -> Samples:
+        """One-cycle mean of Q, shape (n,)."""
+        return self.joined(lambda segment: self._cycle_mean(segment, instantaneous_power(segment).q)) / 1e3
+
+    @cached_property
+    def instantaneous_kva(self) -> Power:
+        """Instantaneous P (kW) and Q (kvar), shape (n,) each."""
+        return Power(*self.joined(lambda segment: np.stack(instantaneous_power(segment))) / 1e3)
+
+    @cached_property
+    def dc_voltage_v(self) -> Samples:
+        """DC voltage (V), shape (n,)."""
+        return self.joined(lambda segment: segment["v_dc_v"])
+
+    def between(self, start_s: float, end_s: float) -> Mask:
+        """Mask of the samples from one instant to another, both included, shape (n,)."""
+        mask: Mask = (self.t_s >= start_s - _SAME_INSTANT_S) & (self.t_s <= end_s + _SAME_INSTANT_S)
+        return mask
+
+    def sequence_pu(self, kind: str, index: int) -> Samples:
+        """One-cycle amplitude of a sequence (0 positive, 1 negative) of the voltages ``u`` or ``u0``, shape (n,)."""
+        base = self.nominal.phase_voltage_peak_v
+        return self.joined(lambda segment: np.abs(sequence_phasors(segment, kind, self.frequency_hz)[index]) / base)
+
+    def joined(self, series: Callable[[Segment], Samples]) -> Samples:
+        """What a function makes of each segment, one after the other, shape (..., n)."""
+        return np.concatenate([series(segment) for segment in self.waveforms], axis=-1)
+
+    def _sequence_current_pu(self, index: int, split: Callable[..., SequenceCurrent]) -> SequenceCurrent:
+        def in_segment(segment: Segment) -> Samples:
+            u, i = (sequence_phasors(segment, kind, self.frequency_hz)[index] for kind in "ui")
+            return np.stack(split(u, i)) / self.nominal.phase_current_peak_a
+
+        return SequenceCurrent(*self.joined(in_segment))
+
+    def _phasors_pu(self, kind: str) -> ComplexSamples:
+        def of_phases(segment: Segment) -> ComplexSamples:
+            return np.stack(phases(*sequence_phasors(segment, kind, self.frequency_hz)))
+
+        found: ComplexSamples = np.concatenate([of_phases(segment) for segment in self.waveforms], axis=-1)
+        return found / self.nominal.phase_voltage_peak_v
+
+    def _cycle_mean(self, segment: Segment, x: Samples) -> Samples:
+        return one_cycle_mean(x, segment.dt_s, self.frequency_hz)
