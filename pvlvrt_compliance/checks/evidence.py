@@ -73,6 +73,11 @@ class Evidence:
         return self._joined(lambda segment: segment.t_s)
 
     @cached_property
+    def step_s(self) -> Samples:
+        """Sampling step at each sample (s), by which it counts in what is taken over time, shape (n,)."""
+        return self._joined(lambda segment: np.full(len(segment), segment.dt_s))
+
+    @cached_property
     def voltage_positive_pu(self) -> Samples:
         """One-cycle V+ at the terminals, shape (n,)."""
         return self._sequence_pu("u", 0)
@@ -153,7 +158,7 @@ class Evidence:
         positive, negative = (
             require_finite(self._sequence_pu("u0", index)[inside], "u0", self.t_s[inside]) for index in (0, 1)
         )
-        step_s = self._joined(lambda segment: np.full(len(segment), segment.dt_s))[inside]
+        step_s = self.step_s[inside]
         return float(np.average(positive, weights=step_s)), float(np.average(negative, weights=step_s))
 
     @property
