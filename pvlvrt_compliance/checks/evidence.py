@@ -19,6 +19,7 @@ from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import asked_sequences_pu
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
+from pvlvrt_compliance.waveforms.joining import one_cycle_series, window_on_one_grid
 
 Mask = NDArray[np.bool_]
 
@@ -33,7 +34,8 @@ class NotApplicable(Exception):  # noqa: N818 - it is a verdict, not an error
 class Evidence:
     """One record with what is known about its test.
 
-    Series have one value a sample of the record, all segments joined, and are NaN in the first cycle of a segment.
+    Series have one value a sample of the record, all segments joined. One-cycle series are NaN in the first cycle of
+    the record, and after a change to a sampling step that does not fit the one before (`waveforms.joining`).
 
     Parameters
     ----------
@@ -78,6 +80,11 @@ class Evidence:
         return self._joined(lambda segment: segment.t_s)
 
     @cached_property
+    def step_s(self) -> Samples:
+        """Sampling step at each sample (s), by which it counts in what is taken over time, shape (n,)."""
+        return self._joined(lambda segment: np.full(len(segment), segment.dt_s))
+
+    @cached_property
     def voltage_positive_pu(self) -> Samples:
         """One-cycle V+ at the terminals, shape (n,)."""
         return self._sequence_pu("u", 0)
@@ -91,7 +98,7 @@ class Evidence:
     def current_phase_pu(self) -> Samples:
         """One-cycle fundamental amplitudes of the phase currents, shape (3, n)."""
         base = self.nominal.phase_current_peak_a
-        return self._joined(lambda segment: phase_amplitudes(segment, "i", self.frequency_hz) / base)
+        return self._one_cycle(lambda segment: phase_amplitudes(segment, "i", self.frequency_hz) / base)
 
     @cached_property
     def current_pu(self) -> Samples:
@@ -101,12 +108,12 @@ class Evidence:
     @cached_property
     def active_power_kw(self) -> Samples:
         """One-cycle mean of P, shape (n,)."""
-        return self._joined(lambda segment: self._cycle_mean(segment, instantaneous_power(segment).p)) / 1e3
+        return self._one_cycle(lambda segment: self._cycle_mean(segment, instantaneous_power(segment).p)) / 1e3
 
     @cached_property
     def reactive_power_kvar(self) -> Samples:
         """One-cycle mean of Q, shape (n,)."""
-        return self._joined(lambda segment: self._cycle_mean(segment, instantaneous_power(segment).q)) / 1e3
+        return self._one_cycle(lambda segment: self._cycle_mean(segment, instantaneous_power(segment).q)) / 1e3
 
     @cached_property
     def dc_voltage_v(self) -> Samples:
@@ -158,7 +165,8 @@ class Evidence:
         positive, negative = (
             require_finite(self._sequence_pu("u0", index)[inside], "u0", self.t_s[inside]) for index in (0, 1)
         )
-        return float(positive.mean()), float(negative.mean())
+        step_s = self.step_s[inside]
+        return float(np.average(positive, weights=step_s)), float(np.average(negative, weights=step_s))
 
     @property
     def asked_pu(self) -> tuple[float, float]:
@@ -208,7 +216,7 @@ class Evidence:
             return self.measurements.during
         if self.during_span is None:
             raise NotApplicable(f"the sag of {self.scenario.duration_s:.3f} s leaves no whole cycle to measure")
-        self.waveforms.window(*self.during_span)  # raises with the reason where there is one
+        window_on_one_grid(self.waveforms, *self.during_span)  # raises with the reason where there is one
         raise MeasurementError("the window during the sag cannot be measured")
 
     def between(self, start_s: float, end_s: float) -> Mask:
@@ -218,10 +226,13 @@ class Evidence:
 
     def _sequence_pu(self, kind: str, index: int) -> Samples:
         base = self.nominal.phase_voltage_peak_v
-        return self._joined(lambda segment: np.abs(sequence_phasors(segment, kind, self.frequency_hz)[index]) / base)
+        return self._one_cycle(lambda segment: np.abs(sequence_phasors(segment, kind, self.frequency_hz)[index]) / base)
 
     def _cycle_mean(self, segment: Segment, x: Samples) -> Samples:
         return one_cycle_mean(x, segment.dt_s, self.frequency_hz)
+
+    def _one_cycle(self, series: Callable[[Segment], Samples]) -> Samples:
+        return np.concatenate(one_cycle_series(self.waveforms, series, self.frequency_hz), axis=-1)
 
     def _joined(self, series: Callable[[Segment], Samples]) -> Samples:
         return np.concatenate([series(segment) for segment in self.waveforms], axis=-1)

@@ -8,6 +8,7 @@ from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.profile.provenance import marks_in
 from pvlvrt_compliance.profile.requirements import RideThrough
+from pvlvrt_compliance.waveforms.container import Samples
 
 KIND = "ride_through"
 
@@ -87,7 +88,14 @@ def _demanded_by_residual_s(requirement: RideThrough, evidence: Evidence) -> flo
     in_sag = evidence.between(scenario.start_s + 1 / evidence.frequency_hz, scenario.clear_s)
     if requirement.envelope is None or not in_sag.any():
         return None
-    return requirement.envelope.time_of(float(np.median(evidence.voltage_positive_pu[in_sag])))
+    return requirement.envelope.time_of(_median(evidence.voltage_positive_pu[in_sag], evidence.step_s[in_sag]))
+
+
+def _median(values: Samples, step_s: Samples) -> float:
+    """Value below which a signal is for half of the time, each sample standing for its step."""
+    order = np.argsort(values)
+    lasting_s = np.cumsum(step_s[order])
+    return float(values[order[np.searchsorted(lasting_s, 0.5 * lasting_s[-1])]])
 
 
 def _judge_long_sag(requirement: RideThrough, evidence: Evidence, released_s: float) -> Check:
