@@ -54,11 +54,11 @@ Outcome run(const PlantState *plant_start, const ControllerState *controller_sta
         Measured sampled = {.u_g_ab = y.u_ab, .i_ab = plant.i, .v_dc = plant.v_dc, .i_pv = plant.i_pv};
         ControllerSignals signals = controller_step(&controller, sampled, controller_params);
         if (!finite_numbers(&plant, &signals))
-            return (Outcome){.status = NOT_FINITE, .samples = n > 0 ? n : 0, .plant = plant};
+            return (Outcome){.status = NOT_FINITE, .periods = n > 0 ? n : 0, .plant = plant};
         if (n >= 0)
             record(samples + CHANNELS * n, &plant, &y, &signals, p->G);
         advance(&plant, m, source, t, p, tables);
         m = signals.m;
     }
-    return (Outcome){.status = COMPLETED, .samples = count, .plant = plant};
+    return (Outcome){.status = COMPLETED, .periods = count, .plant = plant};
 }

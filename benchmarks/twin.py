@@ -23,6 +23,7 @@ from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation import loop
+from pvlvrt_compliance.simulation.recorder import RecordingPlan
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.space_vectors import SQRT2_3, SQRT3_2
 from pvlvrt_compliance.units import Nominal
@@ -186,6 +187,7 @@ class Arguments(NamedTuple):
     tables: plant.PlantTables
     controller_params: controller.ControllerParams
     hardware: Hardware | None  # the twin has none
+    plan: RecordingPlan  # the twin records every period
     samples: NDArray[np.float64]
 
     @property
@@ -200,7 +202,7 @@ def arguments_of(scenario: Scenario, parameters: Parameters | None = None) -> Ar
 
     def no_loop(*arguments: Any) -> loop.Outcome:
         seen.append(Arguments(*arguments))
-        return loop.Outcome(status=loop.COMPLETED, samples=0, plant=arguments[0])
+        return loop.Outcome(status=loop.COMPLETED, periods=0, plant=arguments[0])
 
     simulate(scenario, parameters or Parameters(), run=no_loop)
     seen[0].samples.fill(np.nan)

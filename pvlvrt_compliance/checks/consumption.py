@@ -50,7 +50,7 @@ def _negative_pu(evidence: Evidence) -> float:
     scenario = evidence.scenario
     inside = evidence.between(*(during or (scenario.start_s, scenario.clear_s)))
     negative = require_finite(evidence.voltage_negative_pu[inside], "V-", evidence.t_s[inside])
-    return float(negative.max() if during is None else negative.mean())
+    return float(negative.max() if during is None else np.average(negative, weights=evidence.step_s[inside]))
 
 
 def _parts(zones: ConsumptionZones, evidence: Evidence) -> Iterator[Part]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from pvlvrt_compliance.checks.disturbances import settled_pu, voltage_steps_s
 from pvlvrt_compliance.checks.evidence import Evidence, require_finite
+from pvlvrt_compliance.checks.series import lasting_median
 from pvlvrt_compliance.checks.voltage_quantities import NAMES, voltage_quantity_pu
 from pvlvrt_compliance.profile.curves import Envelope, Side
 from pvlvrt_compliance.profile.provenance import Marked
@@ -73,7 +74,8 @@ def _no_load_sequences_pu(evidence: Evidence) -> tuple[float, float, float]:
         asked = asked_sequences_pu(scenario, scenario.start_s)
         return abs(asked.positive), abs(asked.negative), abs(asked.zero)
     amplitudes = np.abs(np.stack(fortescue(*phasors[:, inside])))
-    positive, negative, zero = np.median(require_finite(amplitudes, "u0", evidence.t_s[inside]), axis=-1)
+    require_finite(amplitudes, "u0", evidence.t_s[inside])
+    positive, negative, zero = lasting_median(amplitudes, evidence.step_s[inside])
     return float(positive), float(negative), float(zero)
 
 

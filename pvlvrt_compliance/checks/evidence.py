@@ -13,6 +13,7 @@ from pvlvrt_compliance.profile.procedure import Detection
 from pvlvrt_compliance.profile.requirements import Requirements
 from pvlvrt_compliance.scenario.timeline import asked_sequences_pu
 from pvlvrt_compliance.waveforms.container import Samples
+from pvlvrt_compliance.waveforms.joining import window_on_one_grid
 
 
 class NotApplicable(Exception):  # noqa: N818 - it is a verdict, not an error
@@ -100,7 +101,8 @@ class Evidence(Series):
         positive, negative = (
             require_finite(self.sequence_pu("u0", index)[inside], "u0", self.t_s[inside]) for index in (0, 1)
         )
-        return float(positive.mean()), float(negative.mean())
+        step_s = self.step_s[inside]
+        return float(np.average(positive, weights=step_s)), float(np.average(negative, weights=step_s))
 
     @property
     def asked_pu(self) -> tuple[float, float]:
@@ -162,7 +164,7 @@ class Evidence(Series):
             return self.measurements.during
         if self.during_span is None:
             raise NotApplicable(f"the sag of {self.scenario.duration_s:.3f} s leaves no whole cycle to measure")
-        self.waveforms.window(*self.during_span)  # raises with the reason where there is one
+        window_on_one_grid(self.waveforms, *self.during_span)  # raises with the reason where there is one
         raise MeasurementError("the window during the sag cannot be measured")
 
 

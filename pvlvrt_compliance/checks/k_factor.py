@@ -8,6 +8,8 @@ by, so that the one formula holds for both, and for a swell too, where all of it
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from pvlvrt_compliance.checks.evidence import Evidence, NotApplicable, require_finite, required
 from pvlvrt_compliance.checks.results import Check
 from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
@@ -67,7 +69,7 @@ def check_k_factor(sequence: Sequence, requirement: ReactiveCurrent, evidence: E
     asked = _asked(sequence, requirement, evidence, window)
     band = _band(asked, requirement, is_event(evidence, required(window.voltage_positive_pu, "V+")))
     t_s, additional = additional_current(sequence, evidence, Span(window.start_s, window.end_s))
-    measured = float(additional.mean())
+    measured = mean_additional(sequence, evidence, window)
     to_high, to_low = band.high - measured, measured - band.low
     at_high = to_high < to_low
     return judged(
@@ -127,9 +129,25 @@ def reactive_before(sequence: Sequence, evidence: Evidence) -> float:
     before = evidence.before()
     if _voltage(sequence, before) < LEAST_VOLTAGE_PU:
         return 0.0  # without voltage there is no reactive current
-    inside = evidence.between(before.start_s, before.end_s)
+    return _mean_reactive(sequence, evidence, before)
+
+
+def mean_additional(sequence: Sequence, evidence: Evidence, window: WindowMeasurements) -> float:
+    """Mean reactive current of a sequence in a window less its mean before the sag (pu).
+
+    Raises
+    ------
+    MeasurementError
+        When one of them cannot be measured.
+    """
+    return _mean_reactive(sequence, evidence, window) - reactive_before(sequence, evidence)
+
+
+def _mean_reactive(sequence: Sequence, evidence: Evidence, window: WindowMeasurements) -> float:
+    inside = evidence.between(window.start_s, window.end_s)
     current = _reactive_series(sequence, evidence)[inside]
-    return float(require_finite(current, "the reactive current", evidence.t_s[inside]).mean())
+    require_finite(current, "the reactive current", evidence.t_s[inside])
+    return float(np.average(current, weights=evidence.step_s[inside]))
 
 
 def additional_current(sequence: Sequence, evidence: Evidence, span: Span) -> tuple[Samples, Samples]:

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,7 @@ from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.space_vectors import phases
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
+from pvlvrt_compliance.waveforms.joining import one_cycle_series
 
 Mask = NDArray[np.bool_]
 
@@ -31,7 +33,10 @@ _SAME_INSTANT_S = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """Series of one record: one value a sample, all segments joined, NaN in the first cycle of a segment.
+    """Series of one record: one value a sample, all segments joined.
+
+    One-cycle series are NaN in the first cycle of the record, and after a change to a sampling step that does not fit
+    the one before (`waveforms.joining`).
 
     Parameters
     ----------
@@ -56,6 +61,11 @@ class Series:
     def t_s(self) -> Samples:
         """Time of each sample (s), shape (n,)."""
         return self.joined(lambda segment: segment.t_s)
+
+    @cached_property
+    def step_s(self) -> Samples:
+        """Sampling step at each sample (s), by which it counts in what is taken over time, shape (n,)."""
+        return self.joined(lambda segment: np.full(len(segment), segment.dt_s))
 
     @cached_property
     def voltage_positive_pu(self) -> Samples:
@@ -86,7 +96,7 @@ class Series:
     def current_phase_pu(self) -> Samples:
         """One-cycle fundamental amplitudes of the phase currents, shape (3, n)."""
         base = self.nominal.phase_current_peak_a
-        return self.joined(lambda segment: phase_amplitudes(segment, "i", self.frequency_hz) / base)
+        return self._one_cycle(lambda segment: phase_amplitudes(segment, "i", self.frequency_hz) / base)
 
     @cached_property
     def reactive_current_pu(self) -> Samples:
@@ -115,12 +125,12 @@ class Series:
     @cached_property
     def active_power_kw(self) -> Samples:
         """One-cycle mean of P, shape (n,)."""
-        return self.joined(lambda segment: self._cycle_mean(segment, instantaneous_power(segment).p)) / 1e3
+        return self._one_cycle(lambda segment: self._cycle_mean(segment, instantaneous_power(segment).p)) / 1e3
 
     @cached_property
     def reactive_power_kvar(self) -> Samples:
         """One-cycle mean of Q, shape (n,)."""
-        return self.joined(lambda segment: self._cycle_mean(segment, instantaneous_power(segment).q)) / 1e3
+        return self._one_cycle(lambda segment: self._cycle_mean(segment, instantaneous_power(segment).q)) / 1e3
 
     @cached_property
     def instantaneous_kva(self) -> Power:
@@ -140,7 +150,7 @@ class Series:
     def sequence_pu(self, kind: str, index: int) -> Samples:
         """One-cycle amplitude of a sequence (0 positive, 1 negative) of the voltages ``u`` or ``u0``, shape (n,)."""
         base = self.nominal.phase_voltage_peak_v
-        return self.joined(lambda segment: np.abs(sequence_phasors(segment, kind, self.frequency_hz)[index]) / base)
+        return self._one_cycle(lambda segment: np.abs(sequence_phasors(segment, kind, self.frequency_hz)[index]) / base)
 
     def joined(self, series: Callable[[Segment], Samples]) -> Samples:
         """What a function makes of each segment, one after the other, shape (..., n)."""
@@ -151,14 +161,28 @@ class Series:
             u, i = (sequence_phasors(segment, kind, self.frequency_hz)[index] for kind in "ui")
             return np.stack(split(u, i)) / self.nominal.phase_current_peak_a
 
-        return SequenceCurrent(*self.joined(in_segment))
+        return SequenceCurrent(*self._one_cycle(in_segment))
 
     def _phasors_pu(self, kind: str) -> ComplexSamples:
-        def of_phases(segment: Segment) -> ComplexSamples:
+        def of_phases(segment: Segment) -> NDArray[Any]:
             return np.stack(phases(*sequence_phasors(segment, kind, self.frequency_hz)))
 
-        found: ComplexSamples = np.concatenate([of_phases(segment) for segment in self.waveforms], axis=-1)
-        return found / self.nominal.phase_voltage_peak_v
+        return np.asarray(self._one_cycle(of_phases), dtype=np.complex128) / self.nominal.phase_voltage_peak_v
 
     def _cycle_mean(self, segment: Segment, x: Samples) -> Samples:
         return one_cycle_mean(x, segment.dt_s, self.frequency_hz)
+
+    def _one_cycle(self, series: Callable[[Segment], Samples]) -> Samples:
+        return np.concatenate(one_cycle_series(self.waveforms, series, self.frequency_hz), axis=-1)
+
+
+def lasting_median(values: Samples, step_s: Samples) -> Samples:
+    """Value below which a series is for half of the time, each sample standing for its step; shapes (..., n), (n,).
+
+    NaN where a value is.
+    """
+    order = np.argsort(values, axis=-1)
+    lasting_s = np.cumsum(step_s[order], axis=-1)
+    half = np.argmax(lasting_s >= 0.5 * lasting_s[..., -1:], axis=-1)[..., np.newaxis]
+    median = np.take_along_axis(values, np.take_along_axis(order, half, axis=-1), axis=-1)[..., 0]
+    return np.where(np.isnan(values).any(axis=-1), np.nan, median)

@@ -8,6 +8,7 @@ from pvlvrt_compliance.checks.evidence import Evidence, require_finite
 from pvlvrt_compliance.measure.groups import window_cycles
 from pvlvrt_compliance.measure.quantities import WindowMeasurements
 from pvlvrt_compliance.waveforms.container import Samples
+from pvlvrt_compliance.waveforms.joining import window_on_one_grid
 
 
 class SteadyWindow(NamedTuple):
@@ -41,7 +42,7 @@ def _last_cycles(evidence: Evidence, window: WindowMeasurements) -> SteadyWindow
     nominal = evidence.nominal
     frequency_hz = window.frequency_hz or evidence.frequency_hz
     start_s = window.end_s - window_cycles(nominal.frequency_hz) / frequency_hz
-    segment = evidence.waveforms.window(start_s, window.end_s)
+    segment = window_on_one_grid(evidence.waveforms, start_s, window.end_s)
     current = np.stack(segment.three_phase("i")) / (nominal.phase_current_peak_a / np.sqrt(2))
     require_finite(current, "the current", segment.t_s)
     return SteadyWindow(start_s, window.end_s, segment.dt_s, frequency_hz, current)

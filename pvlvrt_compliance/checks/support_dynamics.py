@@ -1,7 +1,13 @@
 """The additional reactive current of the positive sequence comes and settles in time."""
 
 from pvlvrt_compliance.checks.evidence import Evidence, NotApplicable, require_finite, required
-from pvlvrt_compliance.checks.k_factor import LEAST_VOLTAGE_PU, POSITIVE, additional_current, is_blocked
+from pvlvrt_compliance.checks.k_factor import (
+    LEAST_VOLTAGE_PU,
+    POSITIVE,
+    additional_current,
+    is_blocked,
+    mean_additional,
+)
 from pvlvrt_compliance.checks.parts import Part, judged_by_parts
 from pvlvrt_compliance.checks.results import Check
 from pvlvrt_compliance.measure.events import EventThresholds, detect_events
@@ -42,8 +48,7 @@ def _final_change(requirement: SupportDynamics, evidence: Evidence) -> float:
         raise NotApplicable("the bridge is blocked during the sag: there is no response to time")
     if (v_positive := required(window.voltage_positive_pu, "V+")) < LEAST_VOLTAGE_PU:
         raise NotApplicable(f"V+ is {v_positive:.3f} pu: too little to tell reactive current by")
-    _, additional = additional_current(POSITIVE, evidence, Span(window.start_s, window.end_s))
-    final_pu = float(additional.mean())
+    final_pu = mean_additional(POSITIVE, evidence, window)
     if abs(final_pu) < requirement.least_change_pu.value:
         raise NotApplicable(
             f"the reactive current changes by {final_pu:+.3f} pu, less than the {requirement.least_change_pu.value:g} "

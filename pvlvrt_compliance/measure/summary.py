@@ -15,12 +15,19 @@ from pvlvrt_compliance.measure.windows import STANDARD_RULES, Span, WindowRules,
 from pvlvrt_compliance.space_vectors import fortescue
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Segment, Waveforms
+from pvlvrt_compliance.waveforms.joining import window_on_one_grid
 
 THD_FLOOR_PU = 1e-3
 """Fundamental current (pu) below which no distortion is stated."""
 
 VOLTAGE_FLOOR_PU = 5e-3
 """Positive-sequence voltage (pu) below which no frequency is stated."""
+
+LONG_WINDOW_S = 3.0
+"""Length from which frequency and distortion are not measured over the whole of a window (s)."""
+
+LAST_PART_S = 0.2
+"""What they are measured in, as long as the intervals of IEC 61000-4-7: ten cycles at 50 Hz, twelve at 60 Hz."""
 
 Quantities = dict[str, float | tuple[float, ...] | None]
 
@@ -31,9 +38,10 @@ def measure(
     """Measure a record in the windows before, during and after its sag.
 
     The frequency that windows and Fourier components go by is the one measured before the sag; the nominal one where
-    there is no voltage to measure it on. A window that the record does not hold, or that crosses a change of the
-    sampling step, is left out (`Waveforms.window` raises with the reason for whoever needs it); a quantity whose
-    channels are missing or not finite is None.
+    there is no voltage to measure it on. A window across a change of the sampling step is measured on the coarsest
+    grid; one that the record does not hold, or whose grids do not fit each other, is left out (`window_on_one_grid`
+    raises with the reason for whoever needs it). Of a window longer than `LONG_WINDOW_S`, frequency and distortion are
+    those of its last `LAST_PART_S`. A quantity whose channels are missing or not finite is None.
 
     Parameters
     ----------
@@ -51,13 +59,21 @@ def measure(
     end_s = waveforms.end_s + waveforms.segments[-1].dt_s
     windows = standard_windows(start_s, clear_s, end_s, frequency_hz, rules, record_start_s=waveforms.t0_s)
     peak_spans = (windows.before, Span(start_s, clear_s), Span(clear_s, end_s))
+    held = {name: _held(waveforms, span) for name, span in windows._asdict().items()}
     measured = {
-        name: _measure_window(waveforms, nominal, frequency_hz, span, peak_span)
+        name: _measure_window(waveforms, nominal, frequency_hz, held[name], span, peak_span)
         for name, span, peak_span in zip(windows._fields, windows, peak_spans, strict=True)
         if span is not None and peak_span is not None
     }
-    controller = None if windows.during is None else _controller(waveforms, frequency_hz, windows.during)
-    return Measurements(**measured, controller=controller)
+    return Measurements(**measured, controller=_controller(held["during"], frequency_hz))
+
+
+def _held(waveforms: Waveforms, span: Span | None) -> Segment | None:
+    """Samples of a window, None where the record does not hold it."""
+    try:
+        return None if span is None else window_on_one_grid(waveforms, *span)
+    except MeasurementError:
+        return None
 
 
 def _record_frequency(waveforms: Waveforms, nominal: Nominal, start_s: float) -> float:
@@ -69,17 +85,26 @@ def _record_frequency(waveforms: Waveforms, nominal: Nominal, start_s: float) ->
 
 
 def _measure_window(
-    waveforms: Waveforms, nominal: Nominal, frequency_hz: float, span: Span, peak_span: Span
+    waveforms: Waveforms, nominal: Nominal, frequency_hz: float, segment: Segment | None, span: Span, peak_span: Span
 ) -> WindowMeasurements | None:
+    if segment is None:
+        return None
     try:
-        segment = waveforms.window(*span)
-        quantities = _voltages(segment, nominal, frequency_hz) | _currents(segment, nominal, frequency_hz)
+        last = _last_part(waveforms, segment, span, frequency_hz)
+        quantities = _voltages(segment, last, nominal, frequency_hz) | _currents(segment, last, nominal, frequency_hz)
         quantities |= _powers(segment, frequency_hz) | _dc_voltage(segment, frequency_hz)
     except MeasurementError:
         return None
     quantities["current_peak_pu"] = _current_peak(waveforms, nominal, peak_span)
     finite = {name: value for name, value in quantities.items() if _is_finite(value)}
     return WindowMeasurements.model_validate({"start_s": span.start_s, "end_s": span.end_s} | finite)
+
+
+def _last_part(waveforms: Waveforms, segment: Segment, span: Span, frequency_hz: float) -> Segment:
+    """Where frequency and distortion of a window are measured."""
+    if span.end_s - span.start_s <= LONG_WINDOW_S:
+        return segment
+    return window_on_one_grid(waveforms, span.end_s - round(LAST_PART_S * frequency_hz) / frequency_hz, span.end_s)
 
 
 def _is_finite(value: float | tuple[float, ...] | None) -> bool:
@@ -92,7 +117,7 @@ def _has(segment: Segment, *kinds: str) -> bool:
     return all(name in segment.channels for name in names)
 
 
-def _voltages(segment: Segment, nominal: Nominal, frequency_hz: float) -> Quantities:
+def _voltages(segment: Segment, last: Segment, nominal: Nominal, frequency_hz: float) -> Quantities:
     if not _has(segment, "u"):
         return {}
     phasors = components(np.stack(segment.three_phase("u")), segment.dt_s, frequency_hz)
@@ -100,7 +125,7 @@ def _voltages(segment: Segment, nominal: Nominal, frequency_hz: float) -> Quanti
     return {
         "voltage_positive_pu": abs(positive) / nominal.phase_voltage_peak_v,
         "voltage_negative_pu": abs(negative) / nominal.phase_voltage_peak_v,
-        "frequency_hz": _window_frequency(segment, nominal, frequency_hz),
+        "frequency_hz": _window_frequency(last, nominal, frequency_hz),
     }
 
 
@@ -111,15 +136,18 @@ def _window_frequency(segment: Segment, nominal: Nominal, frequency_hz: float) -
         return None
 
 
-def _currents(segment: Segment, nominal: Nominal, frequency_hz: float) -> Quantities:
+def _currents(segment: Segment, last: Segment, nominal: Nominal, frequency_hz: float) -> Quantities:
     if not _has(segment, "i"):
         return {}
-    amplitudes = harmonic_amplitudes(np.stack(segment.three_phase("i")), segment.dt_s, frequency_hz)
+    amplitudes = harmonic_amplitudes(np.stack(last.three_phase("i")), last.dt_s, frequency_hz)
+    fundamentals = amplitudes[:, 1]
+    if last.t0_s > segment.t0_s:
+        fundamentals = np.abs(components(np.stack(segment.three_phase("i")), segment.dt_s, frequency_hz))
     floor = THD_FLOOR_PU * nominal.phase_current_peak_a
     # numpy's maximum keeps a NaN, which Python's max may lose: the worst of what is not known is not known.
     distortions = [d for phase in amplitudes if (d := distortion_percent(phase, floor)) is not None]
     return {
-        "current_phase_pu": tuple(float(a) / nominal.phase_current_peak_a for a in amplitudes[:, 1]),
+        "current_phase_pu": tuple(float(a) / nominal.phase_current_peak_a for a in fundamentals),
         "current_thd_percent": float(np.max(distortions)) if distortions else None,
     }
 
@@ -151,10 +179,8 @@ def _dc_voltage(segment: Segment, frequency_hz: float) -> Quantities:
     }
 
 
-def _controller(waveforms: Waveforms, frequency_hz: float, during: Span) -> ControllerBeliefs | None:
-    try:
-        segment = waveforms.window(*during)
-    except MeasurementError:
+def _controller(segment: Segment | None, frequency_hz: float) -> ControllerBeliefs | None:
+    if segment is None:
         return None
 
     def believed(channel: str, unit: float) -> float | None:

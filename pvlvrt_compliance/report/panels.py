@@ -1,6 +1,7 @@
 """What the figure of a test shows: panels of signals, each with its limits."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -14,6 +15,7 @@ from pvlvrt_compliance.report.decimation import BUCKETS, Samples, Trace, decimat
 from pvlvrt_compliance.report.scenario_words import sag_interval
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Segment, Waveforms
+from pvlvrt_compliance.waveforms.joining import one_cycle_series
 
 # Tol's high-contrast colours for the phases: told apart with every common colour blindness and in grey on paper.
 _PHASE_COLOURS = {"a": "#004488", "b": "#DDAA33", "c": "#BB5566"}
@@ -74,10 +76,12 @@ def panels(
     frequency_hz = (before.frequency_hz if before else None) or nominal.frequency_hz
     sag = sag_interval(test.scenario)
     span = (waveforms.t0_s, waveforms.end_s)
-    curves = partial(_curves, waveforms, buckets)
-    voltage = curves(lambda s: _three_phase(s, "u", nominal.phase_voltage_peak_v))
-    sequences = curves(lambda s: _sequences(s, frequency_hz, nominal))
-    current = curves(lambda s: _three_phase(s, "i", nominal.phase_current_peak_a))
+    curves = partial(_curves, waveforms, _shares(waveforms, buckets))
+    voltage = curves(_each(waveforms, lambda s: _three_phase(s, "u", nominal.phase_voltage_peak_v)))
+    sequences = curves(_sequences(waveforms, frequency_hz, nominal))
+    current = curves(_each(waveforms, lambda s: _three_phase(s, "i", nominal.phase_current_peak_a)))
+    power = curves(_each(waveforms, _power))
+    dc_voltage = curves(_each(waveforms, lambda s: {"v<sub>DC</sub>": (BLACK, s["v_dc_v"])}))
     found = [
         Panel("Phase-to-neutral voltages", "pu", 1.0, voltage),
         Panel(
@@ -89,8 +93,8 @@ def panels(
             from_zero=True,
         ),
         Panel("Phase currents", "pu", 1.2, current, _current_limits(limits, span)),
-        Panel("Active and reactive power", "kW, kvar", 1.2, curves(_power), _q_limit(limits, test)),
-        Panel("DC voltage", "V", 0.8, curves(lambda s: {"v<sub>DC</sub>": (BLACK, s["v_dc_v"])})),
+        Panel("Active and reactive power", "kW, kvar", 1.2, power, _q_limit(limits, test)),
+        Panel("DC voltage", "V", 0.8, dc_voltage),
     ]
     return [panel for panel in found if panel.curves]
 
@@ -107,25 +111,34 @@ def opening_s(waveforms: Waveforms) -> float | None:
     return None
 
 
-def _curves(waveforms: Waveforms, buckets: int, signals_of: Callable[[Segment], Signals]) -> list[Curve]:
-    """Curves by name over all segments that the signals can be had from."""
-    total = sum(len(segment) for segment in waveforms)
+def _curves(waveforms: Waveforms, shares: Sequence[int], signals: Sequence[Signals]) -> list[Curve]:
+    """Curves by name, from the signals that could be had of each segment."""
     colours: dict[str, str] = {}
     traces: dict[str, list[Trace]] = {}
-    for segment, signals in _signals(waveforms, signals_of):
-        for name, (colour, samples) in signals.items():
+    for segment, share, found in zip(waveforms, shares, signals, strict=True):
+        for name, (colour, samples) in found.items():
             colours[name] = colour
-            share = max(buckets * len(segment) // total, 1)
             traces.setdefault(name, []).append(_without_leading_gap(segment, samples, share))
     return [Curve(name, colours[name], traces[name]) for name in traces]
 
 
-def _signals(waveforms: Waveforms, signals_of: Callable[[Segment], Signals]) -> Iterator[tuple[Segment, Signals]]:
-    for segment in waveforms:
+def _shares(waveforms: Waveforms, buckets: int) -> list[int]:
+    """Buckets of each segment: the finer it is recorded, the more happens there, so its samples count for more."""
+    finest = min(segment.dt_s for segment in waveforms)
+    weights = [len(segment) * math.sqrt(finest / segment.dt_s) for segment in waveforms]
+    return [max(int(buckets * weight / sum(weights)), 1) for weight in weights]
+
+
+def _each(waveforms: Waveforms, signals_of: Callable[[Segment], Signals]) -> list[Signals]:
+    """Signals of each segment; none where a recording is without their channels."""
+
+    def found(segment: Segment) -> Signals:
         try:
-            yield segment, signals_of(segment)
+            return signals_of(segment)
         except MeasurementError:
-            continue  # a recording without this channel, or sampled too thinly to measure it
+            return {}
+
+    return [found(segment) for segment in waveforms]
 
 
 def _without_leading_gap(segment: Segment, samples: Samples, buckets: int) -> Trace:
@@ -139,13 +152,21 @@ def _three_phase(segment: Segment, kind: str, base: float) -> Signals:
     return {f"{kind}<sub>{name}</sub>": (_PHASE_COLOURS[name], x / base) for name, x in phases.items()}
 
 
-def _sequences(segment: Segment, frequency_hz: float, nominal: Nominal) -> Signals:
-    phasors = sequence_phasors(segment, "u", frequency_hz)
+def _sequences(waveforms: Waveforms, frequency_hz: float, nominal: Nominal) -> list[Signals]:
+    """One-cycle V+ and V- of each segment; none where they cannot be measured."""
     base = nominal.phase_voltage_peak_v
-    return {
-        "V<sup>+</sup>": (BLACK, np.abs(phasors.positive) / base),
-        "V<sup>−</sup>": (PURPLE, np.abs(phasors.negative) / base),
-    }
+
+    def series(segment: Segment) -> Samples:
+        try:
+            phasors = sequence_phasors(segment, "u", frequency_hz)
+        except MeasurementError:  # without these channels, or sampled too thinly
+            return np.full((2, len(segment)), np.nan)
+        return np.abs([phasors.positive, phasors.negative]) / base
+
+    return [
+        {"V<sup>+</sup>": (BLACK, positive), "V<sup>−</sup>": (PURPLE, negative)} if np.isfinite(positive).any() else {}
+        for positive, negative in one_cycle_series(waveforms, series, frequency_hz)
+    ]
 
 
 def _power(segment: Segment) -> Signals:

@@ -8,6 +8,7 @@ from pvlvrt_compliance.scenario.events import (
     FrequencyStep,
     FurtherSag,
     GridStrength,
+    Harmonic,
     Irradiance,
     PhaseJump,
     VoltageProfile,
@@ -63,6 +64,20 @@ def irradiance_points(scenario: Scenario) -> list[tuple[float, float]]:
         t = scenario.start_s + event.t_s
         points += [(t, points[-1][1]), (t + event.ramp_s, event.to_w_m2)]
     return points
+
+
+def busy_stretches(scenario: Scenario) -> list[tuple[float, float]]:
+    """When something changes, begin and end (s from the start of the record), an instant ending where it begins.
+
+    A ramp is busy where it begins and where it ends, not between. What a recording holds is not known here.
+    """
+    instants = {*_breakpoints(scenario), *(t for t, _ in irradiance_points(scenario))} - {LONG_AGO_S}
+    for event in scenario.events:
+        if isinstance(event, Harmonic) and event.t_s is not None:
+            instants.add(scenario.start_s + event.t_s)
+        if isinstance(event, Harmonic) and event.duration_s is not None:
+            instants.add((LONG_AGO_S if event.t_s is None else scenario.start_s + event.t_s) + event.duration_s)
+    return [(t, t) for t in sorted(instants)]
 
 
 def asked_sequences_pu(scenario: Scenario, t_s: float) -> Sequences:

@@ -19,6 +19,7 @@ from pvlvrt_compliance.control.precision import controller_step_in_single
 from pvlvrt_compliance.kernel import cached_kernel, kernel
 from pvlvrt_compliance.plant.grid import source_at
 from pvlvrt_compliance.plant.plant import Observed, PlantParams, PlantState, PlantTables, advance, as_at, observe
+from pvlvrt_compliance.simulation.recorder import RecordingPlan, next_row
 from pvlvrt_compliance.vectors import phases_of
 
 COMPLETED, NOT_FINITE = range(2)
@@ -37,7 +38,7 @@ class Outcome(NamedTuple):
     """How a run ended, and where the plant was then."""
 
     status: int
-    samples: int  # recorded
+    periods: int  # control periods that came out finite, unrecorded settling left out
     plant: PlantState
 
 
@@ -88,12 +89,13 @@ def run(
     tables: PlantTables,
     controller_params: ControllerParams,
     hardware: Hardware | None,
+    plan: RecordingPlan,
     samples: NDArray[np.float64],
 ) -> Outcome:
-    """Simulate from control period ``first`` (negative: unrecorded settling) to the end of ``samples``.
+    """Simulate from control period ``first`` (negative: unrecorded settling) to the end of the plan.
 
     The controller samples at the beginning of a period; what it computes acts from the next period on, held for one:
-    1.5 periods in all, unless ``hardware`` says otherwise. Sample n is at n T_reg.
+    1.5 periods in all, unless ``hardware`` says otherwise. Period n begins at n T_reg.
 
     Parameters
     ----------
@@ -101,12 +103,15 @@ def run(
         States at the beginning.
     m : complex
         Modulating signal of the first period (-).
+    plan : RecordingPlan
+        Which periods are recorded.
     samples : array, shape (n, len(CHANNELS))
-        Filled with the record.
+        Filled with the record, a row for every period of the plan.
     """
     T_reg = plant_params.ratio * plant_params.T_S
     k_grid = 0
-    for n in range(first, len(samples)):
+    row, stretch, due = 0, 0, plan.first[0]
+    for n in range(first, plan.first[-1]):
         t = n * T_reg
         source = source_at(t, k_grid, tables.grid)
         k_grid = source.k
@@ -122,12 +127,14 @@ def run(
             controller, sampled, controller_params, precision.double, precision.single
         )
         if not is_finite(plant, signals):
-            return Outcome(status=NOT_FINITE, samples=max(n, 0), plant=plant)
-        if n >= 0:
-            record(samples[n], plant, y, signals, now.G)
+            return Outcome(status=NOT_FINITE, periods=max(n, 0), plant=plant)
+        if n == due:
+            record(samples[row], plant, y, signals, now.G)
+            row += 1
+            stretch, due = next_row(stretch, n, plan)
         if hardware is not None:
             put(hardware.lines, n - first, signals.m)
             m = acting(hardware.lines, n - first)
         plant = advance(plant, m, source, t, now, tables)
         m = signals.m
-    return Outcome(status=COMPLETED, samples=len(samples), plant=plant)
+    return Outcome(status=COMPLETED, periods=plan.first[-1], plant=plant)

@@ -3,14 +3,19 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pvlvrt_compliance.control.precision import in_single_precision
 from pvlvrt_compliance.errors import SimulationError
 from pvlvrt_compliance.plant import pv_array
+from pvlvrt_compliance.plant.grid import PlaybackTable
+from pvlvrt_compliance.plant.plant import PlantTables
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.scenario.timeline import busy_stretches
 from pvlvrt_compliance.simulation.electronics import hardware_of
 from pvlvrt_compliance.simulation.loop import CHANNELS, COMPLETED, run
+from pvlvrt_compliance.simulation.recorder import RecordingPlan, Stretch, every_period, plan_of
 from pvlvrt_compliance.simulation.translate import (
     control_period_s,
     controller_params,
@@ -21,9 +26,16 @@ from pvlvrt_compliance.simulation.translate import (
 )
 from pvlvrt_compliance.waveforms import Segment, Waveforms
 
+_MOST_NOISE = 2**20  # control periods of sensor noise (43 s), after which it begins anew
 
-def simulate(scenario: Scenario, parameters: Parameters, run=run) -> Waveforms:  # type: ignore[no-untyped-def]
+
+def simulate(  # type: ignore[no-untyped-def]
+    scenario: Scenario, parameters: Parameters, run=run, *, thin: bool = True
+) -> Waveforms:
     """Run plant and controller through a scenario, from the steady state of normal operation.
+
+    A record of 5 s and more holds every control period around whatever happens, and fewer elsewhere (`recorder`). Where
+    the inverter trips there, the run is made once more with its trip among what happens.
 
     Parameters
     ----------
@@ -33,28 +45,70 @@ def simulate(scenario: Scenario, parameters: Parameters, run=run) -> Waveforms: 
         Everything else.
     run : compiled function, optional
         Loop over time with the signature of `loop.run`; the bundled controller's by default.
+    thin : bool
+        Whether long records are thinned out.
 
     Raises
     ------
     SimulationError
         When a number stops being finite, with the simulated time.
     """
-    plant = plant_params(parameters, scenario)
     tables = plant_tables(parameters, scenario)
+    T_reg = control_period_s(parameters)
+    periods = math.floor(scenario.end_s / T_reg) + 1
+    busy = [*busy_stretches(scenario), *_played(tables.playback)]
+    plan = plan_of(busy, periods, T_reg) if thin else every_period(periods)
+    waveforms = _run(scenario, parameters, tables, plan, run)
+    opened_s = _opened_while_thin_s(waveforms)
+    if opened_s is None:
+        return waveforms
+    del waveforms  # the second record takes its place
+    return _run(scenario, parameters, tables, plan_of([*busy, (opened_s, opened_s)], periods, T_reg), run)
+
+
+def _played(playback: PlaybackTable | None) -> list[Stretch]:
+    """When a recording is played back, during which anything may happen."""
+    return [] if playback is None else [(playback.t, playback.t + len(playback.u) * playback.dt)]
+
+
+def _opened_while_thin_s(waveforms: Waveforms) -> float | None:
+    """First sample with the breaker open (s), where not every control period was recorded; None otherwise."""
+    step = min(segment.dt_s for segment in waveforms)
+    for segment in waveforms:
+        if segment["connected"][-1] < 0.5:
+            opened_s = float(segment.t_s[(segment["connected"] < 0.5).argmax()])
+            return opened_s if segment.dt_s > 1.5 * step else None
+    return None
+
+
+def _run(  # type: ignore[no-untyped-def]
+    scenario: Scenario, parameters: Parameters, tables: PlantTables, plan: RecordingPlan, run
+) -> Waveforms:
+    plant = plant_params(parameters, scenario)
     controller = controller_params(parameters, scenario)
     T_reg = control_period_s(parameters)
     settling = math.ceil(parameters.simulation.settling_s / T_reg)
-    samples = np.empty((math.floor(scenario.end_s / T_reg) + 1, len(CHANNELS)))
+    samples = np.empty((sum(plan.rows), len(CHANNELS)))
     start = steady_state(plant, tables.grid, controller, scenario, -settling * T_reg)
-    hardware = hardware_of(parameters, start, settling + len(samples))
+    hardware = hardware_of(parameters, start, min(settling + int(plan.first[-1]), _MOST_NOISE))
     state = start.controller
     if parameters.controller.precision == "single":
         state, controller = in_single_precision(state, controller)
-    outcome = run(start.plant, state, start.m, -settling, plant, tables, controller, hardware, samples)
+    outcome = run(start.plant, state, start.m, -settling, plant, tables, controller, hardware, plan, samples)
     if outcome.status != COMPLETED:
-        raise SimulationError(f"a number stopped being finite at {outcome.samples * T_reg:.4f} s")
-    columns = np.ascontiguousarray(samples.T)
-    return Waveforms((Segment(0.0, T_reg, dict(zip(CHANNELS, columns, strict=True))),))
+        raise SimulationError(f"a number stopped being finite at {outcome.periods * T_reg:.4f} s")
+    return _record(samples, plan, T_reg)
+
+
+def _record(samples: NDArray[np.float64], plan: RecordingPlan, T_reg: float) -> Waveforms:
+    """Rows as segments, one a stretch."""
+    segments = []
+    row = 0
+    for first, step, rows in zip(plan.first.tolist(), plan.step.tolist(), plan.rows, strict=False):
+        columns = np.ascontiguousarray(samples[row : row + rows].T)
+        segments.append(Segment(first * T_reg, step * T_reg, dict(zip(CHANNELS, columns, strict=True))))
+        row += rows
+    return Waveforms(tuple(segments))
 
 
 def available_power_w(scenario: Scenario, parameters: Parameters) -> float:

@@ -31,9 +31,9 @@ def write_comtrade(
     """Write a record as ``<stem>.cfg`` and ``<stem>.dat``.
 
     Values are primary, in the unit that the end of a channel's name says, without scaling. Time is told by the sampling
-    rates: every segment has its line; where a segment begins other than one of its own steps after the last sample,
-    one line more holds for the single step between. The time stamps of the samples, whole microseconds (or powers of
-    ten of them when a record is longer than these can count), say the same more coarsely.
+    rates: every segment has its line; where a segment begins neither one of its own steps nor one of those before it
+    after the last sample, one line more holds for the single step between. The time stamps of the samples, whole
+    microseconds (or powers of ten of them when a record is longer than these can count), say the same more coarsely.
 
     Parameters
     ----------
@@ -106,7 +106,9 @@ def _rate_lines(waveforms: Waveforms) -> list[str]:
     last = 0
     previous: Segment | None = None
     for segment in waveforms:
-        if previous is not None and not _follows(previous, segment):
+        if previous is not None and _is_step(segment.t0_s - previous.end_s, previous.dt_s):
+            rates[-1] = (rates[-1][0], last + 1)
+        elif previous is not None and not _is_step(segment.t0_s - previous.end_s, segment.dt_s):
             rates.append((1 / (segment.t0_s - previous.end_s), last + 1))
         last += len(segment)
         if not rates or rates[-1][1] < last:
@@ -115,8 +117,8 @@ def _rate_lines(waveforms: Waveforms) -> list[str]:
     return [f"{len(rates)}", *(f"{rate!r},{end}" for rate, end in rates)]
 
 
-def _follows(before: Segment, after: Segment) -> bool:
-    return math.isclose(after.t0_s - before.end_s, after.dt_s, abs_tol=1e-10)
+def _is_step(gap_s: float, dt_s: float) -> bool:
+    return math.isclose(gap_s, dt_s, abs_tol=1e-10)
 
 
 def _stamp(start: datetime | None, t_s: float) -> str:

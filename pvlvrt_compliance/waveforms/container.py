@@ -135,13 +135,13 @@ class Waveforms:
         """Time of the last sample (s)."""
         return self.segments[-1].end_s
 
-    def window(self, start_s: float, stop_s: float) -> Segment:
-        """Samples with ``start_s <= t < stop_s``, which must lie in one segment.
+    def segment_with(self, start_s: float, stop_s: float) -> Segment | None:
+        """Return the segment that a window lies in, None when it crosses a change of the sampling step.
 
         Raises
         ------
         MeasurementError
-            When the window leaves the record or crosses a change of the sampling step.
+            When the window leaves the record.
         """
         slack = max(s.dt_s for s in self.segments)
         if start_s < self.t0_s - slack or stop_s > self.end_s + 2 * slack:
@@ -151,5 +151,20 @@ class Waveforms:
             )
         for segment in self.segments:
             if start_s >= segment.t0_s - segment.dt_s and stop_s <= segment.end_s + 2 * segment.dt_s:
-                return segment.slice(start_s, stop_s)
-        raise MeasurementError(f"the window {start_s:.3f} s to {stop_s:.3f} s crosses a change of the sampling step")
+                return segment
+        return None
+
+    def window(self, start_s: float, stop_s: float) -> Segment:
+        """Samples with ``start_s <= t < stop_s``, which must lie in one segment (else see `joining`).
+
+        Raises
+        ------
+        MeasurementError
+            When the window leaves the record or crosses a change of the sampling step.
+        """
+        segment = self.segment_with(start_s, stop_s)
+        if segment is None:
+            raise MeasurementError(
+                f"the window {start_s:.3f} s to {stop_s:.3f} s crosses a change of the sampling step"
+            )
+        return segment.slice(start_s, stop_s)

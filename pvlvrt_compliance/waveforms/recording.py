@@ -1,23 +1,44 @@
-"""Reading a recording of any make: CSV, or COMTRADE through the package of that name."""
+"""Reading a recording of any make: CSV, or COMTRADE through the package of that name; several steps as segments."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
-from pvlvrt_compliance.errors import UsageError, did_you_mean
-from pvlvrt_compliance.waveforms.container import Samples, Segment
+from pvlvrt_compliance.errors import MeasurementError, UsageError, did_you_mean
+from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
+from pvlvrt_compliance.waveforms.joining import window_on_one_grid
 
-_UNEVEN = 1e-3  # largest deviation of a step from the mean of all, as a fraction of it
+_UNEVEN = 1e-3  # largest change from one step to the next within a segment, as a fraction of it
 
 
 def read_recording(path: Path, channels: Sequence[str]) -> Segment:
     """Read some channels of a CSV file (column ``t_s``) or of a COMTRADE file (``.cfg``).
 
+    Of a record of several sampling steps, the samples on the grid of the coarsest.
+
     Raises
     ------
     UsageError
-        When the file or a channel is not there, the samples are not uniform, or the extra ``comtrade`` is missing.
+        When the file or a channel is not there, the samples are not on a uniform grid, or the extra ``comtrade`` is
+        missing.
+    """
+    waveforms = read_waveforms(path, channels)
+    first, last = waveforms.segments[0], waveforms.segments[-1]
+    try:
+        return window_on_one_grid(waveforms, first.t0_s, last.end_s + last.dt_s)
+    except MeasurementError as error:
+        raise UsageError(f"{path}: the samples are not evenly spaced in time ({error})") from None
+
+
+def read_waveforms(path: Path, channels: Sequence[str]) -> Waveforms:
+    """Read some channels of a file, with a segment for every change of the sampling step.
+
+    Raises
+    ------
+    UsageError
+        As `read_recording`; segments may lie on grids of their own, but are evenly spaced.
     """
     try:
         t, columns = _read_comtrade(path) if path.suffix.lower() == ".cfg" else _read_csv(path)
@@ -26,13 +47,30 @@ def read_recording(path: Path, channels: Sequence[str]) -> Segment:
     for name in channels:
         if name not in columns:
             raise UsageError(f"{path}: no channel {name!r}{did_you_mean(name, columns)}; it has {', '.join(columns)}")
-    return Segment(float(t[0]), _step(t, path), {name: columns[name] for name in channels})
+    bounds = _bounds(t, path)
+    return Waveforms(
+        tuple(
+            Segment(float(t[i]), _step(t[i:j], path), {name: columns[name][i:j] for name in channels})
+            for i, j in pairwise(bounds)
+        )
+    )
+
+
+def _bounds(t: Samples, path: Path) -> list[int]:
+    """First sample of every stretch of even steps, then the number of samples."""
+    if len(t) < 2:
+        raise UsageError(f"{path}: a recording needs two samples at least")
+    steps = np.diff(t)
+    if not steps.min() > 0:
+        raise UsageError(f"{path}: the times do not increase")
+    changed = np.abs(np.diff(steps)) > _UNEVEN * steps[1:]
+    changed[:-1] &= ~changed[1:]  # a single step of another length is a pause: the segment after it begins at its end
+    return [0, *(np.flatnonzero(changed) + 1).tolist(), len(t)]
 
 
 def _step(t: Samples, path: Path) -> float:
-    if len(t) < 2:
-        raise UsageError(f"{path}: a recording needs two samples at least")
-    dt = float(t[-1] - t[0]) / (len(t) - 1)
+    """Step of the samples of one segment."""
+    dt = float(t[-1] - t[0]) / (len(t) - 1) if len(t) > 1 else 0.0
     if not dt > 0 or np.abs(np.diff(t) - dt).max() > _UNEVEN * dt:
         raise UsageError(f"{path}: the samples are not evenly spaced in time")
     return dt

@@ -22,7 +22,7 @@ def test_twin_gives_the_waveforms_of_the_package(twin_module: ModuleType, twin: 
     """Every channel of the C program's record equals the package's, and both end alike."""
     mine, theirs = (twin_module.arguments_of(twin_module.SCENARIOS[name]) for _ in range(2))
     outcome, other = loop.run(*mine), twin.run(theirs)
-    assert (outcome.status, outcome.samples, outcome.plant.trip) == (other.status, other.samples, other.plant.trip)
+    assert (outcome.status, outcome.periods, outcome.plant.trip) == (other.status, other.periods, other.plant.trip)
     apart = twin_module.differences(mine.samples, theirs.samples)
     assert {channel: x for channel, x in apart.items() if x > twin_module.TOLERANCE} == {}
 

@@ -136,16 +136,30 @@ def test_breaker_open_before_the_sag(bench):
     assert "before the sag began" in result.checks[0].message
 
 
-def test_record_in_two_segments(bench):
-    """A record that changes its step in the judged part is not evaluated there; nothing crashes."""
+def _in_two(whole: Segment, at_s: float, step: int, offset_s: float = 0.0) -> Waveforms:
+    """A record whose second part keeps every so many-th sample, and may lie off the grid of the first."""
+    k = whole.index_at(at_s)
+    first = Segment(whole.t0_s, whole.dt_s, {n: x[:k] for n, x in whole.channels.items()})
+    rest = {n: x[k::step] for n, x in whole.channels.items()}
+    return Waveforms((first, Segment(whole.t0_s + k * whole.dt_s + offset_s, step * whole.dt_s, rest)))
+
+
+@pytest.mark.parametrize("step", [1, 2, 8])
+def test_record_in_two_segments(bench, step):
+    """A record that changes its step in the judged part gets the verdicts of the whole one."""
     made = bench(q_sag_kvar=250)
-    whole = made.waveforms().segments[0]
-    k = whole.index_at(0.5)
-    halves = [
-        Segment(whole.t0_s + i * whole.dt_s, whole.dt_s, {n: x[i:j] for n, x in whole.channels.items()})
-        for i, j in ((0, k), (k, len(whole)))
-    ]
-    result = evaluate(made.profile, made.test, Waveforms(tuple(halves)), made.nominal, 500e3)
+    waveforms = _in_two(made.waveforms().segments[0], 0.5, step)
+    result = evaluate(made.profile, made.test, waveforms, made.nominal, 500e3)
+    for check, whole in zip(result.checks, made.result().checks, strict=True):
+        assert (check.check, check.status) == (whole.check, whole.status)
+        assert check.margin == pytest.approx(whole.margin, rel=1e-3, abs=1e-3)
+
+
+def test_record_in_two_segments_on_grids_of_their_own(bench):
+    """Where the grids do not fit, what lies across the change is not evaluated; nothing crashes."""
+    made = bench(q_sag_kvar=250)
+    waveforms = _in_two(made.waveforms().segments[0], 0.5, 8, offset_s=10e-6)
+    result = evaluate(made.profile, made.test, waveforms, made.nominal, 500e3)
     assert result.status is Status.NOT_EVALUATED
 
 

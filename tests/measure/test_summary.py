@@ -175,18 +175,41 @@ def test_a_short_record_leaves_windows_out(sag_record, dt_s):
     assert (found.during, found.controller) == (None, None)
 
 
-def test_a_change_of_step_inside_a_window(sag_record, dt_s):
-    """A window that crosses a change of the sampling step is left out; peaks look across it."""
+@pytest.mark.parametrize(("offset", "measured"), [(0.0, True), (0.3, False)])
+def test_a_change_of_step_inside_a_window(sag_record, dt_s, offset, measured):
+    """A window that crosses a change of step is measured where the grids fit, else left out; peaks look across it."""
     channels = sag_record(spike_s=0.35)
     cut = int(0.65 / dt_s)
     fine = Segment(0.0, dt_s, {name: x[:cut] for name, x in channels.items()})
-    coarse = Segment(cut * dt_s, 2 * dt_s, {name: x[cut::2] for name, x in channels.items()})
+    coarse = Segment((cut + offset) * dt_s, 2 * dt_s, {name: x[cut::2] for name, x in channels.items()})
     found = measure(Waveforms((fine, coarse)), NOMINAL, START_S, CLEAR_S)
-    assert found.during is None
+    assert (found.during is not None) is measured
+    if measured:
+        whole = measure(Waveforms((Segment(0.0, dt_s, channels),)), NOMINAL, START_S, CLEAR_S).during
+        for (name, x), (_, y) in zip(found.during, whole, strict=True):
+            assert x == pytest.approx(y, rel=1e-5, abs=1e-5), name
     assert found.before.active_power_kw == pytest.approx(450, abs=0.01)
     assert found.after.active_power_kw == pytest.approx(450, abs=0.01)
     # Cut at the same place, but for a sag that was cleared before: the window lies in the fine part again.
     assert measure(Waveforms((fine, coarse)), NOMINAL, START_S, 0.62).during.current_peak_pu == pytest.approx(1.7)
+
+
+def test_a_long_window(three_phase, dt_s):
+    """Means and fundamentals over the whole of a long window; distortion and frequency at its end."""
+    n = int(8.0 / dt_s)
+    early = np.arange(n) < n // 2
+    channels = three_phase("u", (U, 0, 0), 50.0, n)
+    clean = three_phase("i", (0.5 * I, 0, 0), 50.0, n)
+    distorted = three_phase("i", (0.5 * I, 0, 0), 50.0, n, {5: (0, 0.05 * I, 0)})
+    channels |= {name: np.where(early, clean[name], distorted[name]) for name in clean}
+    channels["v_dc_v"] = np.where(early, 800.0, 900.0)
+    during = measure(Waveforms((Segment(0.0, dt_s, channels),)), NOMINAL, 0.3, 6.8).during
+    assert (during.start_s, during.end_s) == (pytest.approx(0.4), pytest.approx(6.78))
+    assert during.active_power_kw == pytest.approx(250, abs=0.01)
+    assert during.current_phase_pu == pytest.approx((0.5,) * 3, abs=1e-6)
+    assert during.current_thd_percent == pytest.approx(10, abs=1e-4)
+    assert during.dc_voltage_mean_v == pytest.approx((800 * 3.6 + 900 * 2.78) / 6.38, abs=0.01)
+    assert during.frequency_hz == pytest.approx(50, abs=1e-6)
 
 
 def test_no_voltage_before_the_sag(sag_record):

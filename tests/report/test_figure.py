@@ -116,6 +116,17 @@ def test_segments_are_drawn_on_their_own_steps(record, make_test, nominal):
     assert pieces[1]["x0"] == pytest.approx(_points(pieces[0])[0][-1], abs=2e-3)
 
 
+def test_sequence_voltages_go_on_across_a_change_of_step(record, make_test, nominal):
+    """The one-cycle voltages of the second piece begin where the first ends, not a cycle later."""
+    fine = record.segments[0]
+    cut = fine.slice(0.0, 1.0)
+    rest = fine.slice(1.0, 2.0)
+    thin = Segment(rest.t0_s, 4 * rest.dt_s, {name: x[::4] for name, x in rest.channels.items()})
+    drawn = figure.test_figure(Waveforms((cut, thin)), make_test(), nominal)
+    first, second = (trace for trace in drawn["data"] if trace["name"] == "V<sup>+</sup>")
+    assert second["x0"] == pytest.approx(_points(first)[0][-1], abs=2e-3)
+
+
 def test_no_sag_is_drawn_without_marks(make_record, make_test, nominal):
     """A run without a sag has neither band nor envelope."""
     scenario = Scenario(sag=Sag(depth=0), duration_s=0.3)

@@ -91,6 +91,17 @@ def test_segments_with_steps_of_their_own(tmp_path):
     assert_same(read(tmp_path / "steps"), waveforms)
 
 
+def test_segments_on_one_grid_have_a_rate_each(tmp_path):
+    """Of fine and thin stretches on one grid, every step goes with a rate of one segment: none more is needed."""
+    cuts = ((0, 8000, 1), (8000, 16000, 8), (16000, 17000, 1))
+    waveforms = Waveforms(tuple(segment(i * DT_S, n * DT_S, len(range(i, j, n)), n) for i, j, n in cuts))
+    write(waveforms, tmp_path / "thin")
+    assert_same(read(tmp_path / "thin"), waveforms)
+    rates = read_rates(tmp_path / "thin.cfg")
+    assert [rate for rate, _ in rates] == pytest.approx([1 / DT_S, 1 / (8 * DT_S), 1 / DT_S])
+    assert [last for _, last in rates] == [8001, 9001, 10000]
+
+
 @pytest.mark.parametrize("n", [1, 2])
 def test_segments_of_few_samples(tmp_path, n):
     """Segments of a sample or two keep their time too."""
