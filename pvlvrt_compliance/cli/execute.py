@@ -13,6 +13,7 @@ from pvlvrt_compliance.checks.evaluate import summarise
 from pvlvrt_compliance.checks.results import EXIT_STATUS, Results, TestResult, conclude
 from pvlvrt_compliance.cli.output import RESULTS, WAVEFORMS, OutputFolder
 from pvlvrt_compliance.cli.request import Job, Request
+from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.provenance import CHOSEN
 from pvlvrt_compliance.report import console, html, junit, results_json
@@ -61,11 +62,15 @@ class _Run:
         with _progress(len(self.job.tests), self.request.quiet) as advance:
             # The simulator is compiled, or read from its cache, on this import and on the first run.
             from pvlvrt_compliance.simulation.translate import nominal_of
-            from pvlvrt_compliance.study.run import run_test
+            from pvlvrt_compliance.study.rows import run_rows
+            from pvlvrt_compliance.study.run import Judged, run_test
 
-            for test in self.job.tests:
+            def judge_one(test: TestCase) -> Judged:
                 advance(test.id, len(self.finished))
-                result, waveforms = run_test(self.job.profile, test, self.job.parameters)
+                return run_test(self.job.profile, test, self.job.parameters)
+
+            for test, judged in run_rows(self.job.profile, self.job.tests, judge_one):
+                result, waveforms = judged
                 if waveforms is not None:
                     nominal = nominal_of(self.job.parameters, test.scenario)
                     result = self._keep(result, waveforms, test.scenario, nominal)
