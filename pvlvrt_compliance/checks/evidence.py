@@ -101,8 +101,12 @@ class Evidence:
 
     @cached_property
     def tracked_frequency_hz(self) -> Samples:
-        """Frequency of the positive sequence as it changes, NaN in the first two cycles, shape (n,)."""
-        return self._joined(lambda segment: tracked_frequency(segment, self.nominal.frequency_hz))
+        """Frequency of the positive sequence as it changes, NaN in the first two cycles, shape (n,).
+
+        Of the source where the record has its voltages: behind an impedance its current turns the terminals'.
+        """
+        kind = "u0" if "u0_a_v" in self.waveforms.names else "u"
+        return self._joined(lambda segment: tracked_frequency(segment, self.nominal.frequency_hz, kind))
 
     @cached_property
     def current_phase_pu(self) -> Samples:
