@@ -3,20 +3,23 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.measure.fourier import one_cycle_mean
+from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_mean
 from pvlvrt_compliance.measure.frequency import frequency_before
-from pvlvrt_compliance.measure.power import instantaneous_power
+from pvlvrt_compliance.measure.power import VOLTAGE_FLOOR_V, instantaneous_power, sequence_current
 from pvlvrt_compliance.measure.quantities import Measurements, WindowMeasurements
 from pvlvrt_compliance.measure.sequences import phase_amplitudes, sequence_phasors
+from pvlvrt_compliance.measure.tracking import tracked_frequency
 from pvlvrt_compliance.measure.windows import Span, WindowRules, standard_windows
 from pvlvrt_compliance.profile.procedure import Detection
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import asked_sequences_pu
+from pvlvrt_compliance.space_vectors import phases
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
 from pvlvrt_compliance.waveforms.joining import one_cycle_series, window_on_one_grid
@@ -24,6 +27,7 @@ from pvlvrt_compliance.waveforms.joining import one_cycle_series, window_on_one_
 Mask = NDArray[np.bool_]
 
 _SAME_INSTANT_S = 1e-9
+_TRACKING_CYCLES = 4  # that a tracked frequency rests on, and settles in
 
 
 class NotApplicable(Exception):  # noqa: N818 - it is a verdict, not an error
@@ -95,10 +99,40 @@ class Evidence:
         return self._sequence_pu("u", 1)
 
     @cached_property
+    def voltage_phasors_pu(self) -> ComplexSamples:
+        """One-cycle phasors of the phase-to-neutral voltages at the terminals, shape (3, n)."""
+        return self._phasors_pu("u")
+
+    @cached_property
+    def no_load_phasors_pu(self) -> ComplexSamples | None:
+        """The same of the source without the inverter's current, None in a record that has no such voltages."""
+        return self._phasors_pu("u0") if "u0_a_v" in self.waveforms.names else None
+
+    @cached_property
+    def tracked_frequency_hz(self) -> Samples:
+        """Frequency of the positive sequence as it changes, NaN in the first two cycles, shape (n,).
+
+        Of the source where the record has its voltages: behind an impedance its current turns the terminals'.
+        """
+        kind = "u0" if "u0_a_v" in self.waveforms.names else "u"
+        found: Samples = self._one_cycle(
+            lambda segment: tracked_frequency(segment, self.nominal.frequency_hz, kind), _TRACKING_CYCLES
+        )
+        return found
+
+    @cached_property
     def current_phase_pu(self) -> Samples:
         """One-cycle fundamental amplitudes of the phase currents, shape (3, n)."""
         base = self.nominal.phase_current_peak_a
         return self._one_cycle(lambda segment: phase_amplitudes(segment, "i", self.frequency_hz) / base)
+
+    @cached_property
+    def reactive_current_pu(self) -> Samples:
+        """One-cycle reactive current of the positive sequence, above 0 when it delivers reactive power, shape (n,).
+
+        0 where there is no voltage for it to be measured along.
+        """
+        return self._one_cycle(self._reactive_current_a) / self.nominal.phase_current_peak_a
 
     @cached_property
     def current_pu(self) -> Samples:
@@ -228,11 +262,22 @@ class Evidence:
         base = self.nominal.phase_voltage_peak_v
         return self._one_cycle(lambda segment: np.abs(sequence_phasors(segment, kind, self.frequency_hz)[index]) / base)
 
+    def _reactive_current_a(self, segment: Segment) -> Samples:
+        u, i = (sequence_phasors(segment, kind, self.frequency_hz).positive for kind in "ui")
+        return np.where(np.abs(u) < VOLTAGE_FLOOR_V, 0.0, sequence_current(u, i).reactive)
+
+    def _phasors_pu(self, kind: str) -> ComplexSamples:
+        def of_phases(segment: Segment) -> ComplexSamples:
+            return np.stack(phases(*sequence_phasors(segment, kind, self.frequency_hz)))
+
+        found: ComplexSamples = self._one_cycle(of_phases)
+        return found / self.nominal.phase_voltage_peak_v
+
     def _cycle_mean(self, segment: Segment, x: Samples) -> Samples:
         return one_cycle_mean(x, segment.dt_s, self.frequency_hz)
 
-    def _one_cycle(self, series: Callable[[Segment], Samples]) -> Samples:
-        return np.concatenate(one_cycle_series(self.waveforms, series, self.frequency_hz), axis=-1)
+    def _one_cycle(self, series: Callable[[Segment], NDArray[Any]], cycles: int = 1) -> NDArray[Any]:
+        return np.concatenate(one_cycle_series(self.waveforms, series, self.frequency_hz, cycles), axis=-1)
 
     def _joined(self, series: Callable[[Segment], Samples]) -> Samples:
         return np.concatenate([series(segment) for segment in self.waveforms], axis=-1)

@@ -11,6 +11,8 @@ from pvlvrt_compliance.checks.evaluate import evaluate
 from pvlvrt_compliance.checks.results import Check, TestResult
 from pvlvrt_compliance.profile import Profile, TestCase, load_profile
 from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.scenario.timeline import entries
+from pvlvrt_compliance.space_vectors import phases
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Segment, Waveforms
 
@@ -22,7 +24,8 @@ class Bench:
     """A record to be judged; by default a flawless inverter's through the sag of the test.
 
     Currents are balanced; the powers asked for come out as means at the terminals. Times count from the start of the
-    sag, ``recovers_after_s`` and the argument of ``p_after_kw`` from clearing.
+    sag, ``recovers_after_s`` and the argument of ``p_after_kw`` from clearing. ``p_kw`` and ``q_kvar`` take the place
+    of all other powers, ``flows`` is a factor on the current. Events of the scenario move the voltages as they say.
     """
 
     profile: Profile
@@ -39,6 +42,9 @@ class Bench:
     disconnected_after_s: float | None = None
     blocked_after_s: float | None = None
     extra_current_pu: Callable[[np.ndarray], np.ndarray] | None = None
+    p_kw: Callable[[np.ndarray], np.ndarray] | None = None
+    q_kvar: Callable[[np.ndarray], np.ndarray] | None = None
+    flows: Callable[[np.ndarray], np.ndarray] | None = None
     without: tuple[str, ...] = ()
     spoiled: dict[str, float] = field(default_factory=dict)
     nominal: Nominal = field(default_factory=Nominal)
@@ -48,10 +54,10 @@ class Bench:
         scenario = self.test.scenario
         t = DT_S * np.arange(int(scenario.end_s / DT_S))
         in_sag = (t >= scenario.start_s) & (t < scenario.clear_s)
-        angle = 2 * np.pi * scenario.frequency_hz * (t - scenario.start_s) + np.radians(scenario.point_on_wave_deg)
-        turning = np.exp(1j * angle)
-        u0 = self._voltage(self.no_load_sag or self.sag or scenario.sag, in_sag)
-        u = self._voltage(self.sag or scenario.sag, in_sag)
+        asked, turning = self._asked(t)
+        u0, u = (
+            asked if sag is None else self._voltage(sag, in_sag) for sag in (self.no_load_sag or self.sag, self.sag)
+        )
         i = self._current(t, u, in_sag)
         channels = {f"u_{p}_v": (x * turning).real for p, x in zip("abc", u, strict=True)}
         channels |= {f"u0_{p}_v": (x * turning).real for p, x in zip("abc", u0, strict=True)}
@@ -76,6 +82,20 @@ class Bench:
         """Judge the record and pick one verdict."""
         return next(check for check in self.result().checks if check.check == kind)
 
+    def _asked(self, t: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
+        """Phasors of the source as asked for, and the turning of phase a's healthy fundamental."""
+        table = entries(self.test.scenario)
+        begin = np.array([entry.t_s for entry in table])
+        here = np.searchsorted(begin, t, side="right") - 1
+        dt = t - begin[here]
+        angle, f, rate = (
+            np.array([getattr(entry, name) for entry in table])[here]
+            for name in ("angle_rad", "frequency_hz", "rocof_hz_s")
+        )
+        at, slope = (np.array([getattr(entry, n) for entry in table])[here].T for n in ("sequences_pu", "slope_pu_s"))
+        phasors = phases(*(self.nominal.phase_voltage_peak_v * (at + slope * dt)))
+        return list(phasors), np.exp(1j * (angle + 2 * np.pi * (f * dt + 0.5 * rate * dt**2)))
+
     def _voltage(self, sag: Sag, in_sag: np.ndarray) -> list[np.ndarray]:
         healthy = Sag(depth=0).phasors_pu()
         peak = self.nominal.phase_voltage_peak_v
@@ -90,14 +110,20 @@ class Bench:
         p = np.where(t < scenario.start_s, self.p_before_kw, after)
         p = np.where(in_sag, self.p_sag_kw, p)
         p = np.where((t >= scenario.clear_s) & (t < scenario.clear_s + self.recovers_after_s), 0.0, p)
-        power = 1e3 * (p + 1j * np.where(in_sag, self.q_sag_kvar, 0.0))
+        q = np.where(in_sag, self.q_sag_kvar, 0.0)
+        since_start = t - scenario.start_s
+        p = p if self.p_kw is None else self.p_kw(since_start)
+        q = q if self.q_kvar is None else self.q_kvar(since_start)
+        power = 1e3 * (p + 1j * q)
         dead = np.abs(positive) < 1e-6
         current = np.where(dead, 0, 2 / 3 * np.conj(power / np.where(dead, 1, positive)))
         return [current, current * rotation.conjugate(), current * rotation]
 
     def _feeding(self, t: np.ndarray) -> np.ndarray:
         stops = [s for s in (self.disconnected_after_s, self.blocked_after_s) if s is not None]
-        return (t < self.test.scenario.start_s + min(stops, default=np.inf)).astype(float)
+        since_start = t - self.test.scenario.start_s
+        factor = 1.0 if self.flows is None else self.flows(since_start)
+        return factor * (since_start < min(stops, default=np.inf))
 
 
 @pytest.fixture(scope="session")
@@ -120,5 +146,23 @@ def bench(iec: Profile) -> Callable[..., Bench]:
         scenario = settings.pop("scenario", {})
         sag = settings.pop("asked", None) or Sag(depth=depth)
         return Bench(profile, profile.ad_hoc_test(sag, duration_s, **scenario), **settings)
+
+    return make
+
+
+def _marked(item: Any) -> Any:
+    """Numbers of a requirement with a mark each; tables carry their own."""
+    if isinstance(item, dict):
+        return item if "confidence" in item else {key: _marked(part) for key, part in item.items()}
+    return item if isinstance(item, str) else {"value": item, "confidence": "chosen", "source": "a test"}
+
+
+@pytest.fixture
+def profile_with(spain: Profile) -> Callable[[str, dict[str, Any]], Profile]:
+    """Make a profile of one requirement alone; plain numbers get a mark."""
+
+    def make(kind: str, requirement: dict[str, Any]) -> Profile:
+        whole = spain.model_dump(by_alias=True) | {"requirements": {kind: _marked(requirement)}, "tests": ()}
+        return Profile.model_validate(whole)
 
     return make

@@ -1,0 +1,130 @@
+"""What a limit of the voltage demands of the connection, and the limits that are envelopes."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from pvlvrt_compliance.checks.disturbances import settled_pu, voltage_steps_s
+from pvlvrt_compliance.checks.evidence import Evidence, require_finite
+from pvlvrt_compliance.checks.voltage_quantities import NAMES, voltage_quantity_pu
+from pvlvrt_compliance.measure.durations import median_over_time
+from pvlvrt_compliance.profile.curves import Envelope, Side
+from pvlvrt_compliance.profile.provenance import Marked
+from pvlvrt_compliance.profile.requirements import RideThrough
+from pvlvrt_compliance.scenario.timeline import asked_sequences_pu
+from pvlvrt_compliance.space_vectors import fortescue
+from pvlvrt_compliance.waveforms.container import Samples
+
+
+class Demand(NamedTuple):
+    """Stay connected for a time from an instant of the record on."""
+
+    since_s: float
+    stay_s: float
+    by: str  # what demands it, in words
+    clause: str
+    mark: Marked
+
+    @property
+    def until_s(self) -> float:
+        """Instant from which the inverter may let go (s)."""
+        return self.since_s + self.stay_s
+
+
+class Limit(NamedTuple):
+    """One limit of the voltage, as it applies to a record."""
+
+    release: Demand | None  # what it demanded until it first let the inverter go, None when it never does
+    demand_at: Callable[[float], Demand | None]  # what it demands of the voltage at an instant, had that gone on
+
+
+def envelope_limits(requirement: RideThrough, evidence: Evidence) -> list[Limit]:
+    """The envelopes that apply to a record: for sags, and for swells.
+
+    Raises
+    ------
+    MeasurementError
+        When a voltage is missing or not finite.
+    """
+    low, name = requirement.envelope, "the envelope"
+    if requirement.envelope_two_phase is not None and is_two_phase(evidence):
+        low, name = requirement.envelope_two_phase, "the envelope of two-phase faults"
+    found = [(low, Side.LOW, name), (requirement.envelope_over_voltage, Side.HIGH, "the over-voltage envelope")]
+    tolerance_pu = requirement.envelope_tolerance_pu.value
+    return [_limit(envelope, side, by, tolerance_pu, evidence) for envelope, side, by in found if envelope is not None]
+
+
+def is_two_phase(evidence: Evidence) -> bool:
+    """Whether the sag is that of an isolated two-phase fault, by the voltages without the inverter's current.
+
+    Measured where the record has them, else those asked for. A two-phase fault leaves V+ + V- = 1 pu and V0 = 0; a
+    fault of two phases to earth lacks V- of that sum, a fault of one phase has V0 = V-. The sag is taken to be
+    what it lies nearest to. (A fault of one phase beyond a transformer that blocks the zero sequence reads the same.)
+    """
+    positive, negative, zero = _no_load_sequences_pu(evidence)
+    return abs(1 - positive - negative) < negative / 2 and zero < negative / 2
+
+
+def _no_load_sequences_pu(evidence: Evidence) -> tuple[float, float, float]:
+    scenario = evidence.scenario
+    phasors = evidence.no_load_phasors_pu
+    inside = evidence.between(scenario.start_s + 1 / evidence.frequency_hz, scenario.clear_s)
+    if phasors is None or not inside.any():
+        asked = asked_sequences_pu(scenario, scenario.start_s)
+        return abs(asked.positive), abs(asked.negative), abs(asked.zero)
+    amplitudes = np.abs(np.stack(fortescue(*phasors[:, inside])))
+    require_finite(amplitudes, "u0", evidence.t_s[inside])
+    positive, negative, zero = (median_over_time(x, evidence.step_s[inside]) for x in amplitudes)
+    return positive, negative, zero
+
+
+def _limit(envelope: Envelope, side: Side, by: str, tolerance_pu: float, evidence: Evidence) -> Limit:
+    after_start = evidence.between(evidence.scenario.start_s, evidence.waveforms.end_s)
+    voltage_pu = voltage_quantity_pu(evidence, envelope.voltage_quantity)
+    require_finite(voltage_pu[after_start], NAMES[envelope.voltage_quantity], evidence.t_s[after_start])
+    starts_s = _starts_s(envelope, side, tolerance_pu, voltage_pu, evidence)
+
+    def demand(since_s: float, stay_s: float) -> Demand:
+        return Demand(since_s, stay_s, by, envelope.clause, envelope)
+
+    def demand_at(at_s: float) -> Demand | None:
+        settled = settled_pu(evidence, voltage_pu, at_s)
+        stay_s = None if settled is None else envelope.time_of(settled, side)
+        return None if stay_s is None else demand(max((t for t in starts_s if t <= at_s), default=starts_s[0]), stay_s)
+
+    for begin_s, end_s in zip(starts_s, (*starts_s[1:], evidence.waveforms.end_s), strict=True):
+        here = evidence.between(begin_s, end_s)
+        t_s = evidence.t_s[here] - begin_s
+        beyond_pu = (envelope.voltage_at(t_s) - voltage_pu[here]) * (1 if side is Side.LOW else -1)
+        left_s = _first_excursion_s(t_s, beyond_pu, tolerance_pu)
+        if left_s is not None:
+            return Limit(demand(begin_s, left_s), demand_at)
+    return Limit(None, demand_at)
+
+
+def _starts_s(
+    envelope: Envelope, side: Side, tolerance_pu: float, voltage_pu: Samples, evidence: Evidence
+) -> list[float]:
+    """Instants that the envelope counts from: the start of the test, and each step of a voltage that had come back."""
+    sign = 1 if side is Side.LOW else -1
+    back_pu = sign * envelope.points[-1][1] - tolerance_pu
+    starts_s = [evidence.scenario.start_s]
+    for step_s in voltage_steps_s(evidence.scenario):
+        at_step = min(int(np.searchsorted(evidence.t_s, step_s)), len(evidence.t_s) - 1)
+        if step_s > starts_s[0] and sign * voltage_pu[at_step] >= back_pu:
+            starts_s.append(step_s)
+    return starts_s
+
+
+def _first_excursion_s(t_s: Samples, beyond_pu: Samples, tolerance_pu: float) -> float | None:
+    """When the voltage first leaves the envelope (s, as ``t_s``), None when it never does.
+
+    An excursion counts when it goes deeper than the tolerance, so that a sag that is cleared exactly on the envelope
+    is within it; it then counts from its beginning.
+    """
+    deep = np.flatnonzero(beyond_pu > tolerance_pu)
+    if not len(deep):
+        return None
+    on_or_within = np.flatnonzero(beyond_pu[: deep[0]] <= 0)
+    return float(t_s[on_or_within[-1] + 1 if len(on_or_within) else 0])

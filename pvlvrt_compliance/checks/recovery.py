@@ -1,0 +1,90 @@
+"""How long the active power takes to come back."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from pvlvrt_compliance.checks.evidence import Evidence, require_finite
+from pvlvrt_compliance.checks.results import Check
+from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
+from pvlvrt_compliance.errors import MeasurementError
+from pvlvrt_compliance.profile.provenance import Marked, Number
+from pvlvrt_compliance.profile.requirements import Requirement
+
+
+def recovered_after_s(evidence: Evidence, from_s: float, target_kw: float) -> float | None:
+    """Time from an instant until the one-cycle mean of P stays at or above a power.
+
+    Parameters
+    ----------
+    evidence : Evidence
+        The record.
+    from_s : float
+        The instant that the time counts from (s, from the start of the record).
+    target_kw : float
+        The power (kW).
+
+    Returns
+    -------
+    float or None
+        Seconds; 0 when P is never below the power from the instant on, None when the record ends below it.
+
+    Raises
+    ------
+    MeasurementError
+        When P is not finite somewhere from the instant on.
+    """
+    after = evidence.between(from_s, evidence.waveforms.end_s)
+    t_s = evidence.t_s[after]
+    active_power = require_finite(evidence.active_power_kw[after], "P", t_s)
+    too_low = np.flatnonzero(active_power < target_kw)
+    if not len(too_low):
+        return 0.0
+    return float(t_s[too_low[-1] + 1] - from_s) if too_low[-1] + 1 < len(t_s) else None
+
+
+def judge_recovery(
+    kind: str,
+    requirement: Requirement,
+    evidence: Evidence,
+    *,
+    from_s: float,
+    fraction: Number,
+    time_s: Number,
+    rests_on: Iterable[Marked],
+    since: str,
+) -> Check:
+    """Verdict on the time that an inverter which stayed connected takes to be back at a share of its power.
+
+    Parameters
+    ----------
+    from_s : float
+        The instant that the time counts from (s, from the start of the record); ``since`` names it.
+    fraction, time_s : Number
+        The share of P before the sag, and the time allowed.
+
+    Raises
+    ------
+    MeasurementError
+        When P cannot be measured, or the record ends before the time is over and P is not back.
+    """
+    before_kw, allowed_s = evidence.power_before_kw, time_s.value
+    target = f"{100 * fraction.value:g} % of the {before_kw:.1f} kW before the sag"
+    back_s = recovered_after_s(evidence, from_s, fraction.value * before_kw)
+    observed_s = evidence.waveforms.end_s - from_s
+    if back_s is None and observed_s < allowed_s:
+        raise MeasurementError(f"the record ends {observed_s:.3f} s after {since}, before P is back at {target}")
+    recovered_s = observed_s if back_s is None else back_s
+    came = f"P was {'not ' if back_s is None else ''}back at {target}"
+    return judged(
+        kind,
+        requirement,
+        pass_or_fail(recovered_s <= allowed_s),
+        f"connected throughout; {came} {recovered_s:.3f} s after {since}",
+        measured=recovered_s,
+        limit=allowed_s,
+        margin=allowed_s - recovered_s,
+        unit="s",
+        at_s=from_s + recovered_s,
+        rests_on=rests_on,
+    )

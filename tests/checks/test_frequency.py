@@ -1,0 +1,142 @@
+"""Frequency ride-through and power over frequency, each on both sides of its limit."""
+
+import numpy as np
+import pytest
+
+from pvlvrt_compliance.checks.results import Status
+
+BANDS = [{"frequency_hz": (47.0, 49.0), "ride_s": 0.6}, {"frequency_hz": (49.0, 51.0)},
+         {"frequency_hz": (51.0, 52.0), "ride_s": 0.4}]  # fmt: skip
+KIND = "frequency_ride_through"
+
+
+@pytest.fixture
+def frequency(profile_with, bench):
+    """Make a record of events of the frequency, judged by bands and a rate."""
+    bands = {"rows": BANDS, "clause": "7.1", "confidence": "code", "source": "a test"}
+    demand = {"clause": "7", "source": "a test", "bands": bands, "rocof_hz_s": 2.0, "rocof_window_s": 0.1}
+    profile = profile_with(KIND, demand)
+
+    def make(*events, duration_s=1.0, **settings):
+        return bench(
+            depth=0, duration_s=duration_s, profile=profile, scenario={"events": events}, p_sag_kw=500, **settings
+        )
+
+    return make
+
+
+def ramp(to_hz, rate_hz_s=1.0, t_s=0.0, from_hz=50.0):
+    """Ramp of the frequency to a level."""
+    lasts_s = abs(to_hz - from_hz) / rate_hz_s
+    return {
+        "kind": "frequency_ramp",
+        "t_s": t_s,
+        "rate_hz_s": np.sign(to_hz - from_hz) * rate_hz_s,
+        "duration_s": lasts_s,
+    }
+
+
+@pytest.mark.parametrize(("to_hz", "status"), [(50.19, Status.NOT_APPLICABLE), (50.22, Status.PASS)])
+def test_normal_frequencies_are_not_judged(frequency, to_hz, status):
+    """A frequency within 0.2 Hz of nominal is no disturbance."""
+    assert frequency(ramp(to_hz)).check(KIND).status is status
+
+
+@pytest.mark.parametrize(("to_hz", "band_s", "begun_s"), [(48.5, 0.6, 0.5), (51.5, 0.4, 0.5)])
+@pytest.mark.parametrize(("late_s", "status"), [(-0.01, Status.FAIL), (0.05, Status.NOT_APPLICABLE)])
+def test_trip_around_the_time_of_a_band(frequency, to_hz, band_s, begun_s, late_s, status):
+    """A band must be ridden through for its time from when the frequency enters it, seen a cycle late."""
+    events = [ramp(to_hz, rate_hz_s=2.0)]
+    check = frequency(*events, duration_s=2.0, disconnected_after_s=begun_s + band_s + late_s).check(KIND)
+    assert check.status is status, check.message
+    assert check.limit == pytest.approx(band_s, abs=1e-3)
+    assert check.clause == "7.1"
+    assert "Hz/s over 0.1 s" in check.message
+
+
+def test_trip_in_the_continuous_band(frequency):
+    """A trip while every frequency is one to be ridden through for ever fails."""
+    check = frequency(ramp(50.9), disconnected_after_s=0.95).check(KIND)
+    assert check.status is Status.FAIL
+    assert "demands connection" in check.message
+
+
+@pytest.mark.parametrize(("to_hz", "status"), [(51.995, Status.FAIL), (52.03, Status.NOT_APPLICABLE)])
+def test_beyond_all_bands_the_inverter_may_go_at_once(frequency, to_hz, status):
+    """The last edge is sharp to the accuracy of the measurement, 10 mHz."""
+    events = [ramp(to_hz, rate_hz_s=20.0)]
+    made = frequency(*events, duration_s=1.0, disconnected_after_s=0.2)
+    made.profile = made.profile.model_copy(update={"requirements": made.profile.requirements.model_copy(update={
+        KIND: made.profile.requirements.frequency_ride_through.model_copy(
+            update={"rocof_hz_s": None, "rocof_window_s": None})})})  # fmt: skip
+    assert made.check(KIND).status is status
+
+
+@pytest.mark.parametrize(("rate", "status"), [(2.0, Status.FAIL), (2.15, Status.FAIL), (2.3, Status.NOT_APPLICABLE)])
+def test_trip_around_the_rate(frequency, rate, status):
+    """A trip is let off by a rate beyond the limit, known to 0.2 Hz/s over a window of 0.1 s."""
+    assert frequency(ramp(50.8, rate), disconnected_after_s=0.5).check(KIND).status is status
+
+
+def test_a_jump_of_the_angle_is_no_frequency(frequency):
+    """A jump of 60 degrees reads as Hertz for two cycles, which are left out."""
+    jump = {"kind": "phase_jump", "t_s": 0.1, "angle_deg": 60}
+    assert frequency(jump, disconnected_after_s=0.5).check(KIND).status is Status.NOT_APPLICABLE
+    check = frequency(jump, ramp(50.9, t_s=0.2), disconnected_after_s=1.2).check(KIND)
+    assert check.status is Status.FAIL
+    assert "furthest 50.90 Hz" in check.message
+
+
+def test_blocked_bridge_does_not_ride_through(frequency):
+    """Staying connected without current is no ride-through."""
+    check = frequency(ramp(50.9), blocked_after_s=0.5).check(KIND)
+    assert check.status is Status.FAIL
+    assert "bridge blocked" in check.message
+
+
+def test_connected_throughout_says_the_worst(frequency):
+    """A pass names the frequency furthest from nominal and the fastest rate."""
+    check = frequency(ramp(51.5, 1.5)).check(KIND)
+    assert check.status is Status.PASS
+    assert "51.50 Hz" in check.message
+    assert "1.50 Hz/s" in check.message
+
+
+LFSM = {"clause": "5.1", "source": "a test", "threshold_hz": 50.2, "droop_fraction": 0.05, "activation_s": 0.3,
+        "tolerance_fraction": 0.05}  # fmt: skip
+
+
+def droop_kw(off_kw, lag_s=0.0):
+    """Power by a droop of 5 % above 50.2 Hz on a ramp of 1 Hz/s to 51 Hz and an offset."""
+    return lambda t: 500 * (1 - np.clip(t - lag_s - 0.2, 0, 0.8) / 2.5) + off_kw * (t > 0.2)
+
+
+@pytest.mark.parametrize(
+    ("off_kw", "status"), [(21, Status.PASS), (-21, Status.PASS), (26, Status.FAIL), (-29, Status.FAIL)]
+)
+def test_power_over_frequency(bench, profile_with, off_kw, status):
+    """P must lie within 5 % of rated power of the droop's, on either side (a ramp is seen 4 kW late)."""
+    made = bench(depth=0, duration_s=2, profile=profile_with("overfrequency_power", LFSM), p_kw=droop_kw(off_kw),
+                 scenario={"events": [ramp(51.0)]})  # fmt: skip
+    check = made.check("overfrequency_power")
+    assert check.status is status, check.message
+    assert check.limit == 25
+    assert check.measured == pytest.approx(abs(off_kw), abs=4.1)
+
+
+@pytest.mark.parametrize(("activated_s", "status"), [(0.49, Status.PASS), (0.54, Status.FAIL)])
+def test_power_within_the_time_of_activation(bench, profile_with, activated_s, status):
+    """Nothing is judged until the frequency has been above the threshold for the time of activation."""
+    power = lambda t: np.where(t < activated_s, 500.0, droop_kw(0)(t))  # noqa: E731
+    made = bench(depth=0, duration_s=2, profile=profile_with("overfrequency_power", LFSM), p_kw=power,
+                 scenario={"events": [ramp(51.0)]})  # fmt: skip
+    assert made.check("overfrequency_power").status is status
+
+
+@pytest.mark.parametrize(("to_hz", "lasts_s"), [(50.19, 2.0), (50.4, 0.2)])
+def test_frequency_that_asks_for_nothing(bench, profile_with, to_hz, lasts_s):
+    """A frequency below the threshold, or above it for too short a time, is not judged."""
+    events = [ramp(to_hz, 5.0), ramp(50.0, 5.0, lasts_s, to_hz)]
+    made = bench(depth=0, duration_s=2.2, profile=profile_with("overfrequency_power", LFSM), p_sag_kw=500,
+                 scenario={"events": events})  # fmt: skip
+    assert made.check("overfrequency_power").status is Status.NOT_APPLICABLE
