@@ -36,7 +36,7 @@ def test_unknown_name():
 @pytest.mark.parametrize("path", ["nowhere.toml", "no/where", "a\0b.toml", "x" * 5000 + ".toml"])
 def test_no_such_file(path):
     """A path without a file is a usage error that names the shipped profiles."""
-    with pytest.raises(UsageError, match="iec61400-21, spain-q-curve"):
+    with pytest.raises(UsageError, match=r"iec61400-21, .*spain-q-curve"):
         load_profile(path)
 
 
