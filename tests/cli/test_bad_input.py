@@ -119,7 +119,7 @@ def test_broken_toml(command, own_profile, tmp_path):
     path = own_profile("[requirements\n")
     ended = command("--profile", path, "--sag", "90%", "--output", tmp_path / "out")
     assert ended.status == 2
-    assert f"{path}: 1 problem\n  not TOML: " in ended.err
+    assert f"{path}: 1 problem\n  {path}:5: not TOML: " in ended.err
     assert "line 5" in ended.err
     assert not (tmp_path / "out").exists()
 
