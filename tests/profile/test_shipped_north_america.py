@@ -146,3 +146,12 @@ def test_cumulative_dips(shipped):
         assert sum(dip.duration_s for dip in dips) == pytest.approx(region.ride_s - 0.02)
         assert scenario.duration_s <= regions.cumulative_window_s
         assert abs(asked_sequences_pu(scenario, scenario.start_s).positive) == pytest.approx(residual_pu)
+
+
+@pytest.mark.parametrize("name", NORTH_AMERICA[:2])
+def test_power_quality_is_judged_in_steady_operation(shipped, name):
+    """Harmonics and direct current are judged on a healthy grid alone, and nothing else there."""
+    for test in shipped[name].tests():
+        kinds = {kind for kind, _ in shipped[name].requirements.by_kind() if test.judges(kind)}
+        assert (kinds == {"harmonics", "dc_injection"}) == test.id.startswith("steady")
+        assert kinds.isdisjoint({"harmonics", "dc_injection"}) != test.id.startswith("steady")
