@@ -5,7 +5,8 @@ from itertools import pairwise
 import numpy as np
 
 from pvlvrt_compliance.checks.evidence import Evidence
-from pvlvrt_compliance.checks.series import Mask, lasting_median
+from pvlvrt_compliance.checks.series import Mask
+from pvlvrt_compliance.measure.durations import median_over_time
 from pvlvrt_compliance.scenario.events import FurtherSag, PhaseJump
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import Entry, asked_sequences_pu, entries
@@ -55,7 +56,7 @@ def settled_pu(evidence: Evidence, voltage_pu: Samples, at_s: float) -> float | 
     """Median of a voltage between the steps next to an instant, its first cycle left out (pu); None if none is left."""
     begin_s, end_s = between_steps_s(evidence, at_s)
     settled = evidence.between(begin_s + 1 / evidence.frequency_hz, end_s)
-    return float(lasting_median(voltage_pu[settled], evidence.step_s[settled])) if settled.any() else None
+    return median_over_time(voltage_pu[settled], evidence.step_s[settled]) if settled.any() else None
 
 
 def after_each_step(evidence: Evidence, cycles: float, instants_s: tuple[float, ...]) -> Mask:

@@ -7,8 +7,8 @@ import numpy as np
 
 from pvlvrt_compliance.checks.disturbances import settled_pu, voltage_steps_s
 from pvlvrt_compliance.checks.evidence import Evidence, require_finite
-from pvlvrt_compliance.checks.series import lasting_median
 from pvlvrt_compliance.checks.voltage_quantities import NAMES, voltage_quantity_pu
+from pvlvrt_compliance.measure.durations import median_over_time
 from pvlvrt_compliance.profile.curves import Envelope, Side
 from pvlvrt_compliance.profile.provenance import Marked
 from pvlvrt_compliance.profile.requirements import RideThrough
@@ -75,8 +75,8 @@ def _no_load_sequences_pu(evidence: Evidence) -> tuple[float, float, float]:
         return abs(asked.positive), abs(asked.negative), abs(asked.zero)
     amplitudes = np.abs(np.stack(fortescue(*phasors[:, inside])))
     require_finite(amplitudes, "u0", evidence.t_s[inside])
-    positive, negative, zero = lasting_median(amplitudes, evidence.step_s[inside])
-    return float(positive), float(negative), float(zero)
+    positive, negative, zero = (median_over_time(x, evidence.step_s[inside]) for x in amplitudes)
+    return positive, negative, zero
 
 
 def _limit(envelope: Envelope, side: Side, by: str, tolerance_pu: float, evidence: Evidence) -> Limit:

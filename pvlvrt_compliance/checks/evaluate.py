@@ -3,7 +3,8 @@
 from collections.abc import Iterable
 
 from pvlvrt_compliance.checks.evidence import Evidence, NotApplicable
-from pvlvrt_compliance.checks.registry import find_judge
+from pvlvrt_compliance.checks.judging import in_words, judge_safely
+from pvlvrt_compliance.checks.registry import Judge, find_judge
 from pvlvrt_compliance.checks.results import Check, ProfileSummary, Status, TestResult, worst
 from pvlvrt_compliance.checks.validity import reason_not_to_count
 from pvlvrt_compliance.checks.verdicts import unjudged
@@ -114,18 +115,27 @@ def _judge_all(profile: Profile, test: TestCase, evidence: Evidence) -> list[Che
 
 
 def _judge(kind: str, requirement: Requirement, evidence: Evidence) -> Check:
-    judge = find_judge(kind)
+    try:
+        judge = find_judge(kind)
+    except Exception as error:
+        return unjudged(kind, requirement, Status.ERROR, f"the check could not be loaded: {in_words(error)}")
     if judge is None:
         reason = f"no installed package has a check for the requirement {kind!r}"
         return unjudged(kind, requirement, Status.NOT_EVALUATED, reason)
-    try:
-        if kind not in CONNECTION_KINDS and (stop := _stop(evidence)) is not None:
-            return unjudged(kind, requirement, Status.NOT_APPLICABLE, stop)
+    return judge_safely(kind, _unless_stopped(kind, judge), requirement, evidence)
+
+
+def _unless_stopped(kind: str, judge: Judge) -> Judge:
+    """The judge, but for the verdict on an inverter that stopped for good: that is of the connection alone."""
+    if kind in CONNECTION_KINDS:
+        return judge
+
+    def judge_what_runs(requirement: Requirement, evidence: Evidence) -> Check:
+        if (stop := _stop(evidence)) is not None:
+            raise NotApplicable(stop)
         return judge(requirement, evidence)
-    except NotApplicable as reason:
-        return unjudged(kind, requirement, Status.NOT_APPLICABLE, str(reason))
-    except MeasurementError as error:
-        return unjudged(kind, requirement, Status.NOT_EVALUATED, str(error))
+
+    return judge_what_runs
 
 
 def _stop(evidence: Evidence) -> str | None:

@@ -57,7 +57,7 @@ def _judge_connection(
         return _judge_trip(requirement, evidence, evidence.disconnected_at_s, limits, release)
     if release is not None and release.until_s < last_return_s(evidence.scenario):
         return _judge_long_sag(requirement, evidence, release)
-    if requirement.recovery_fraction is None or requirement.recovery_time_s is None:
+    if requirement.recovery_fraction is None or requirement.recovery_time_s is None or _is_another_matter(evidence):
         return _throughout(requirement, evidence)
     return judge_recovery(
         KIND,

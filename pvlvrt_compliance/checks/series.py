@@ -29,6 +29,7 @@ from pvlvrt_compliance.waveforms.joining import one_cycle_series
 Mask = NDArray[np.bool_]
 
 _SAME_INSTANT_S = 1e-9
+_TRACKING_CYCLES = 4  # that a tracked frequency rests on, and settles in
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,8 +90,14 @@ class Series:
 
     @cached_property
     def tracked_frequency_hz(self) -> Samples:
-        """Frequency of the positive sequence as it changes, NaN in the first two cycles, shape (n,)."""
-        return self.joined(lambda segment: tracked_frequency(segment, self.nominal.frequency_hz))
+        """Frequency of the positive sequence as it changes, NaN in the first two cycles, shape (n,).
+
+        Of the source where the record has its voltages: behind an impedance its current turns the terminals'.
+        """
+        kind = "u0" if "u0_a_v" in self.waveforms.names else "u"
+        return self._one_cycle(
+            lambda segment: tracked_frequency(segment, self.nominal.frequency_hz, kind), _TRACKING_CYCLES
+        )
 
     @cached_property
     def current_phase_pu(self) -> Samples:
@@ -172,17 +179,5 @@ class Series:
     def _cycle_mean(self, segment: Segment, x: Samples) -> Samples:
         return one_cycle_mean(x, segment.dt_s, self.frequency_hz)
 
-    def _one_cycle(self, series: Callable[[Segment], Samples]) -> Samples:
-        return np.concatenate(one_cycle_series(self.waveforms, series, self.frequency_hz), axis=-1)
-
-
-def lasting_median(values: Samples, step_s: Samples) -> Samples:
-    """Value below which a series is for half of the time, each sample standing for its step; shapes (..., n), (n,).
-
-    NaN where a value is.
-    """
-    order = np.argsort(values, axis=-1)
-    lasting_s = np.cumsum(step_s[order], axis=-1)
-    half = np.argmax(lasting_s >= 0.5 * lasting_s[..., -1:], axis=-1)[..., np.newaxis]
-    median = np.take_along_axis(values, np.take_along_axis(order, half, axis=-1), axis=-1)[..., 0]
-    return np.where(np.isnan(values).any(axis=-1), np.nan, median)
+    def _one_cycle(self, series: Callable[[Segment], Samples], cycles: int = 1) -> Samples:
+        return np.concatenate(one_cycle_series(self.waveforms, series, self.frequency_hz, cycles), axis=-1)

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -66,14 +67,20 @@ class _Run:
             # The simulator is compiled, or read from its cache, on this import and on the first run.
             from pvlvrt_compliance.simulation.simulate import simulate
             from pvlvrt_compliance.simulation.translate import nominal_of
-            from pvlvrt_compliance.study.run import run_test
+            from pvlvrt_compliance.study.rows import run_rows
+            from pvlvrt_compliance.study.run import Judged, run_test
             from pvlvrt_compliance.study.sharing import SharedSimulator, rows_of, shared_together
 
             simulator = SharedSimulator(simulate, self.job.tests)
+
+            def judge_one(profile: Profile, test: TestCase) -> Judged:
+                advance(f"{profile.id} {test.id}", len(self.finished))
+                return run_test(profile, test, self.job.parameters, simulator)
+
             for row in shared_together(rows_of(self.job.tests)):
-                for profile, test in row:
-                    advance(f"{profile.id} {test.id}", len(self.finished))
-                    result, waveforms = run_test(profile, test, self.job.parameters, simulator)
+                profile = row[0].profile
+                for test, judged in run_rows(profile, [item.test for item in row], partial(judge_one, profile)):
+                    result, waveforms = judged
                     if waveforms is not None:
                         nominal = nominal_of(self.job.parameters, test.scenario)
                         result = self._keep(result, waveforms, Assignment(profile, test), nominal)
@@ -87,9 +94,8 @@ class _Run:
             summarise(profile, *(_of(profile, items) for items in (job.tests, job.left_out)))
             for profile in job.profiles
         ]
-        place = {(profile.id, test.id): index for index, (profile, test) in enumerate(job.tests)}
-        last = len(place)  # runs that a repetition rule asked for besides
-        finished = sorted(self.finished, key=lambda test: place.get((test.profile, test.id), last))
+        order = [profile.id for profile in job.profiles]
+        finished = sorted(self.finished, key=lambda test: order.index(test.profile))
         return conclude(finished, summaries, origin)
 
     def write_reports(self) -> Results:

@@ -7,8 +7,9 @@ from typing import Any, NamedTuple, get_args
 from pydantic import ValidationError
 
 from pvlvrt_compliance.errors import UsageError, did_you_mean
-from pvlvrt_compliance.profile.loading import known_profiles, load_profile
+from pvlvrt_compliance.profile.loading import load_profile
 from pvlvrt_compliance.profile.profile import Profile
+from pvlvrt_compliance.profile.search_path import known_profiles
 from pvlvrt_compliance.scenario.files import load_events
 from pvlvrt_compliance.scenario.parameters import Parameters, parameters_from
 from pvlvrt_compliance.scenario.sag import PAIRS, Sag, Type

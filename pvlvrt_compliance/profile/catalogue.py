@@ -11,8 +11,9 @@ from pvlvrt_compliance.profile.curves import Envelope
 from pvlvrt_compliance.profile.problems import dotted, problem_lines
 from pvlvrt_compliance.profile.procedure import BY_ENVELOPE, Procedure, StepSequence, TestCase, TestRow
 from pvlvrt_compliance.profile.provenance import weakest
-from pvlvrt_compliance.scenario.events import VoltageProfile
-from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.profile.sequences import Step
+from pvlvrt_compliance.scenario.events import FurtherSag, VoltageProfile
+from pvlvrt_compliance.scenario.sag import Phases, Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 
 _RESOLUTION_DIGITS = 9  # of V+ in pu: a sag to exactly the last level must not fall below it by rounding
@@ -26,16 +27,18 @@ def sag_duration_s(sag: Sag, envelope: Envelope | None, procedure: Procedure) ->
 
 
 def make_scenario(procedure: Procedure, **fields: Any) -> Scenario:
-    """Scenario with the procedure's times before and after the sag.
+    """Scenario with the procedure's frequency and times before and after the sag.
 
     Raises
     ------
     UsageError
         When a field is unknown or out of its range; names all of them.
     """
-    times = {"before_s": procedure.before_s.value, "after_s": procedure.after_s.value}
+    shared = {"before_s": procedure.before_s.value, "after_s": procedure.after_s.value}
+    if procedure.frequency_hz is not None:
+        shared["frequency_hz"] = procedure.frequency_hz.value
     try:
-        return Scenario.model_validate(times | fields)
+        return Scenario.model_validate(shared | fields)
     except ValidationError as error:
         problems = (f"{dotted(location)}: {text}" for location, text in problem_lines(error, Scenario))
         raise UsageError("; ".join(problems)) from None
@@ -79,7 +82,8 @@ def _scenario_fields(row: TestRow, procedure: Procedure, envelope: Envelope | No
     fields["reactive_power_pu"] = row.reactive_power_pu
     if row.grid is not None:
         fields |= {"scr": row.grid.scr, "xr": row.grid.xr}
-    given = {"vector_group": row.vector_group, "before_s": row.before_s, "after_s": row.after_s}
+    names = ("frequency_hz", "vector_group", "before_s", "after_s")
+    given = {name: getattr(row, name) for name in names}
     return fields | {name: value for name, value in given.items() if value is not None}
 
 
@@ -96,8 +100,8 @@ def _angles_deg(row: TestRow, procedure: Procedure) -> tuple[float, ...]:
 
 def _duration_s(
     row: TestRow, envelope: Envelope | None, procedure: Procedure
-) -> tuple[float, tuple[VoltageProfile, ...]]:
-    """How long the disturbance lasts (s), and the voltage profile that its steps make."""
+) -> tuple[float, tuple[VoltageProfile | FurtherSag, ...]]:
+    """How long the disturbance lasts (s), and the events that its steps make."""
     if row.steps is not None:
         return _steps(row.steps, procedure)
     if row.duration_s is not None and row.duration_s != BY_ENVELOPE:
@@ -107,7 +111,7 @@ def _duration_s(
     return sag_duration_s(row.sag, envelope, procedure), ()
 
 
-def _steps(sequence: StepSequence, procedure: Procedure) -> tuple[float, tuple[VoltageProfile, ...]]:
+def _steps(sequence: StepSequence, procedure: Procedure) -> tuple[float, tuple[VoltageProfile | FurtherSag, ...]]:
     if sequence.table not in procedure.steps:
         known = ", ".join(procedure.steps) or "none"
         raise UsageError(f"steps.table: {sequence.table!r} is not in procedure.steps; it has: {known}")
@@ -117,8 +121,17 @@ def _steps(sequence: StepSequence, procedure: Procedure) -> tuple[float, tuple[V
         raise UsageError(f"steps.{error}") from None
     ends = list(accumulate(step.duration_s for step in steps))
     begins = [0.0, *ends[:-1]]
+    if sequence.phases != "abc":
+        return ends[-1], tuple(_step_of(sequence.phases, *each) for each in zip(begins, steps, strict=True))
     levels = [(t, step.voltage_pu) for step, *span in zip(steps, begins, ends, strict=True) for t in span]
     return ends[-1], (VoltageProfile(points=((0.0, 1.0), *levels, (ends[-1], 1.0))),)
+
+
+def _step_of(phases: Phases, t_s: float, step: Step) -> FurtherSag:
+    """A step of some phases: a sag, since a voltage profile is of all phases."""
+    if step.voltage_pu > 1:
+        raise UsageError(f"steps.phases: a step to {step.voltage_pu:g} pu must be of all phases")
+    return FurtherSag(t_s=t_s, duration_s=step.duration_s, sag=Sag(depth=round(1 - step.voltage_pu, 9), phases=phases))
 
 
 def _irradiance_w_m2(power: str, procedure: Procedure) -> float:

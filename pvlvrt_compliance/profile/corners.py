@@ -44,6 +44,7 @@ def _row(table: RegionTable, tests: CornerTests, region: Region, voltage_pu: flo
         events=(step,) if swell else (),
         duration_s=duration_s,
         powers=tests.powers,
+        checks=tests.checks,
         long=duration_s >= tests.long_from_s,
         confidence=weakest([tests.confidence, table.confidence]),
         source=f"{tests.source}; {table.source}",

@@ -28,6 +28,24 @@ _WORDS = {
 _SHOW_INPUT = frozenset(_WORDS) - {"missing", "string_too_short"}
 _LONGEST_INPUT = 60
 
+A_NUMBER, A_TABLE = "a number", "a table"
+FORMS = frozenset({A_NUMBER, A_TABLE})
+"""Names of the forms of a value that is one or the other; blanks keep them apart from keys."""
+
+_UNITS = {
+    "s": "seconds",
+    "pu": "per unit",
+    "hz": "hertz",
+    "hz_s": "hertz per second",
+    "deg": "degrees",
+    "percent": "percent",
+    "fraction": "a fraction, 0 to 1",
+    "w_m2": "watts per square metre",
+}
+_OTHER_UNITS = frozenset(
+    {"ms", "us", "min", "h", "cycles", "periods", "v", "kv", "a", "ka", "w", "kw", "mhz", "rad", "hz_ms", "rad_s"}
+) | frozenset(_UNITS)
+
 
 def dotted(location: Location) -> str:
     """Spell a location as ``tests[2].sag.depth``."""
@@ -37,10 +55,40 @@ def dotted(location: Location) -> str:
     return text
 
 
-def problem_lines(error: ValidationError, model: type[BaseModel]) -> list[tuple[Location, str]]:
-    """Location and text of every problem that validation against ``model`` found."""
-    problems = error.errors(include_url=False)
-    return [_at_its_key(problem["loc"], _in_words(problem, model), model) for problem in problems]
+def problem_lines(
+    error: ValidationError, model: type[BaseModel], data: Any = None
+) -> list[tuple[tuple[int | str, ...], str]]:
+    """Location and text of every problem that validation of ``data`` against ``model`` found."""
+    found = []
+    for problem in error.errors(include_url=False):
+        if not _is_echo(problem):
+            location, text = _at_its_key(problem["loc"], _in_words(problem, model), model)
+            found.append((_as_written(location, data), text))
+    return found
+
+
+def _is_echo(problem: Any) -> bool:
+    """Whether a list is only called too short because its elements have problems of their own."""
+    return problem["type"] == "too_short" and bool(len(problem["input"]) >= problem["ctx"]["min_length"])
+
+
+def _as_written(location: Location, data: Any) -> tuple[int | str, ...]:
+    """A location without the names that pydantic puts between a key and one of several forms of its value."""
+    written: list[int | str] = []
+    at_form = False
+    for part in location:
+        is_form = part in FORMS or (isinstance(data, dict) and data.get("kind") == part)
+        at_form = is_form and not at_form
+        if not at_form:
+            written.append(part)
+            data = _content(data, part)
+    return tuple(written)
+
+
+def _content(data: Any, part: int | str) -> Any:
+    if isinstance(data, dict):
+        return data.get(part)
+    return data[part] if isinstance(data, list) and isinstance(part, int) and part < len(data) else None
 
 
 def _at_its_key(location: Location, text: str, model: type[BaseModel]) -> tuple[Location, str]:
@@ -68,7 +116,24 @@ def _shown(value: Any) -> str:
 
 def _unknown_key(key: str, known: Iterable[str]) -> str:
     known = list(known)
+    expected = next((name for name in known if _differs_in_unit(key, name)), None)
+    if expected is not None:
+        return f'unknown key; did you mean "{expected}"? It is in {_UNITS[_unit_of(expected)]}'
     return f"unknown key{did_you_mean(key, known) or '; allowed: ' + ', '.join(known)}"
+
+
+def _differs_in_unit(key: str, known: str) -> bool:
+    """Whether a key is a known one with another unit, or with none."""
+    unit = _unit_of(known)
+    stem = known.removesuffix(unit).removesuffix("_")
+    return bool(unit and stem) and (
+        key == stem or (key.startswith(f"{stem}_") and key[len(stem) + 1 :] in _OTHER_UNITS)
+    )
+
+
+def _unit_of(key: str) -> str:
+    """Unit that a key ends with; the longest, as hz_s also ends with s."""
+    return max((unit for unit in _UNITS if key == unit or key.endswith(f"_{unit}")), key=len, default="")
 
 
 def known_keys(model: type[BaseModel], location: Location) -> list[str]:
@@ -86,16 +151,27 @@ def _member(annotation: Any, part: int | str) -> Any:
         by_key = {field.alias or name: field.annotation for name, field in annotation.model_fields.items()}
         return _without_none(by_key.get(str(part)))
     arguments = typing.get_args(annotation)
+    if part in FORMS or typing.get_origin(annotation) in (typing.Union, types.UnionType):
+        return _form(arguments, str(part))
     if typing.get_origin(annotation) is dict:
         return _without_none(arguments[1])
     return _without_none(arguments[0]) if arguments else None
 
 
+def _form(forms: Iterable[Any], name: str) -> Any:
+    """The form of a value that pydantic calls by a name: that of the model whose ``kind`` it is, or of a table."""
+    models = [form for form in map(_without_none, forms) if _is_model(form)]
+    by_kind = (form for form in models if "kind" in form.model_fields and form.model_fields["kind"].default == name)
+    return next(by_kind, models[0] if models and name == A_TABLE else None)
+
+
 def _without_none(annotation: Any) -> Any:
+    """What an annotation holds besides its metadata and None."""
     if typing.get_origin(annotation) is typing.Annotated:
         return _without_none(typing.get_args(annotation)[0])
     if typing.get_origin(annotation) in (typing.Union, types.UnionType):
-        return _without_none(next(a for a in typing.get_args(annotation) if a is not type(None)))
+        others = [a for a in typing.get_args(annotation) if a is not type(None)]
+        return _without_none(others[0]) if len(others) == 1 else annotation
     return annotation
 
 

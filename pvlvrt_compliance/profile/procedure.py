@@ -7,7 +7,7 @@ from pydantic import Field, ValidatorFunctionWrapHandler, WrapValidator, model_v
 from pvlvrt_compliance.profile.provenance import Fraction, Frozen, Marked, NotNegative, Number, Numbers, Positive
 from pvlvrt_compliance.profile.sequences import CornerTests, StepTable
 from pvlvrt_compliance.scenario.events import Event
-from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.scenario.sag import Phases, Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 
 BY_ENVELOPE = "envelope"
@@ -70,6 +70,7 @@ class Detection(Frozen):
 class Procedure(Frozen):
     """What all tests of a profile share."""
 
+    frequency_hz: Positive | None = Field(default=None, description="nominal frequency of the grid; none: 50 Hz")
     before_s: Positive
     after_s: Positive
     default_duration_s: Positive = Field(description="of a sag that the envelope never limits")
@@ -89,10 +90,11 @@ class Grid(Frozen):
 
 
 class StepSequence(Frozen):
-    """Named steps one after the other, all phases alike."""
+    """Named steps one after the other."""
 
     table: str = Field(description="one of procedure.steps")
     order: str = Field(min_length=1, description="letters of the steps, each with its primes: ABCD'F")
+    phases: Phases = Field(default="abc", description="that the steps are of; steps of some phases go up to 1 pu only")
 
 
 class TestRow(Marked):
@@ -114,6 +116,7 @@ class TestRow(Marked):
     vector_group: str | None = None
     powers: tuple[str, ...] = Field(min_length=1)
     points_on_wave_deg: tuple[float, ...] | None = Field(default=None, min_length=1)
+    frequency_hz: float | None = Field(default=None, gt=0, description="in place of the procedure's")
     reactive_power_pu: float = Field(default=0.0, ge=-1, le=1, description="set-point before and after the sag")
     k_factor: float | None = Field(default=None, gt=0, description="in place of the requirement's K")
     before_s: float | None = Field(default=None, gt=0, description="in place of the procedure's")

@@ -1,14 +1,13 @@
 """A grid code as data: requirements, test procedure and acceptance, each number with its provenance."""
 
 import hashlib
-from collections import Counter
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from functools import cached_property
 from typing import Any, Literal
 
 from pydantic import Field
 
-from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.errors import UsageError, did_you_mean
 from pvlvrt_compliance.profile.catalogue import expand, make_scenario, sag_duration_s
 from pvlvrt_compliance.profile.corners import corner_rows
 from pvlvrt_compliance.profile.curves import Envelope
@@ -114,14 +113,30 @@ class Profile(Frozen):
                 doubtful.setdefault(f"{row.confidence} ({row.source})", []).append(row.id)
         return (*sentences, *(f"tests {', '.join(ids)}: {mark}" for mark, ids in doubtful.items()))
 
-    def inconsistencies(self) -> list[str]:
-        """Problems that no single key shows: rows that cannot be expanded, ids that occur twice."""
-        problems, ids = [], Counter[str]()
+    def inconsistencies(self) -> list[tuple[tuple[int | str, ...], str]]:
+        """Problems that no single key shows: rows that cannot be expanded, ids that occur twice. Location and text."""
+        problems: list[tuple[tuple[int | str, ...], str]] = []
+        ids = set[str]()
         if self.procedure.corners is not None and len(self.all_rows) == len(self.rows):
-            problems.append("procedure.corners: needs requirements.ride_through.regions with times to stay connected")
+            needed = "needs requirements.ride_through.regions with times to stay connected"
+            problems.append((("procedure", "corners"), needed))
         for index, row in enumerate(self.all_rows):
+            place = ("tests", index) if index < len(self.rows) else ("procedure", "corners")
+            problems += [((*place, "checks"), text) for text in self._unknown_checks(row)]
             try:
-                ids.update(case.id for case in expand(row, self.procedure, self.envelope, {}))
+                cases = [case.id for case in expand(row, self.procedure, self.envelope, {})]
+                twice = [name for k, name in enumerate(cases) if name in ids or name in cases[:k]]
+                problems += [((*place, "id"), f"the id {name!r} occurs twice") for name in twice[:1]]
+                ids.update(cases)
             except UsageError as error:
-                problems.append(f"tests[{index}].{error}")
-        return problems + [f"tests: the id {name!r} occurs {count} times" for name, count in ids.items() if count > 1]
+                key, _, text = str(error).partition(": ")
+                problems.append(((*place, *key.split(".")), text))
+        return problems
+
+    def _unknown_checks(self, row: TestRow) -> Iterator[str]:
+        """What is wrong with the kinds that judge a row."""
+        kinds = [kind for kind, _ in self.requirements.by_kind()]
+        for name in row.checks or ():
+            if name not in kinds:
+                hint = did_you_mean(name, kinds) or f"; it has: {', '.join(kinds)}"
+                yield f"{name!r} is no requirement of this profile{hint}"

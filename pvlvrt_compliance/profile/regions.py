@@ -1,11 +1,12 @@
 """Regions of voltage with a mode of operation each: what codes state in place of an envelope."""
 
 from itertools import pairwise
-from typing import Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from pvlvrt_compliance.profile.curves import Side, VoltageQuantity
+from pvlvrt_compliance.profile.problems import A_NUMBER, A_TABLE
 from pvlvrt_compliance.profile.provenance import Frozen, Marked
 
 Mode = Literal[
@@ -33,12 +34,19 @@ class LinearTime(Frozen):
         return self.s + self.slope_s_per_pu * (u_pu - self.at_pu)
 
 
+def _form(value: Any) -> str:
+    return A_TABLE if isinstance(value, (dict, LinearTime)) else A_NUMBER
+
+
+Time = Annotated[Annotated[float, Tag(A_NUMBER)] | Annotated[LinearTime, Tag(A_TABLE)], Discriminator(_form)]
+
+
 class Region(Frozen):
     """Voltages from the first level (included) up to the second, and what the inverter does there."""
 
     voltage_pu: tuple[float, float]
     mode: Mode
-    ride_s: float | LinearTime | None = Field(default=None, description="stay connected this long; none: for ever")
+    ride_s: Time | None = Field(default=None, description="stay connected this long; none: for ever")
     respond_s: float | None = Field(default=None, gt=0, description="cease or trip within")
 
     @model_validator(mode="after")

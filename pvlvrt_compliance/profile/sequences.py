@@ -54,4 +54,5 @@ class CornerTests(Marked):
     inside_s: float = Field(gt=0, description="shorter than the time")
     powers: tuple[str, ...] = Field(min_length=1)
     phases: tuple[Phases, ...] = Field(default=("abc",), min_length=1, description="of a sag; swells are of all phases")
+    checks: tuple[str, ...] | None = Field(default=None, min_length=1, description="kinds judged; none: all")
     long_from_s: float = Field(default=600.0, gt=0, description="longer tests run on request only")

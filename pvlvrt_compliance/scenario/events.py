@@ -17,7 +17,7 @@ class _Event(BaseModel):
 
 
 class FurtherSag(_Event):
-    """Another sag; of sags that overlap, the one that began last holds."""
+    """Another sag; of sags that overlap, the one that began last holds (beginning together: the last listed)."""
 
     kind: Literal["sag"] = "sag"
     t_s: Time

@@ -130,7 +130,7 @@ def _sagged(scenario: Scenario, t: float) -> Sequences:
     holding = [(begin, sag) for begin, end, sag in sags if begin <= t < end]
     if not holding:
         return Sequences(1 + 0j, 0j, 0j)
-    sequences = max(holding, key=lambda item: item[0])[1].sequences_pu()
+    sequences = max(reversed(holding), key=lambda item: item[0])[1].sequences_pu()
     return sequences if scenario.vector_group is None else through_transformer(sequences, scenario.vector_group)
 
 

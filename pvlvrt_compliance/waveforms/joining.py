@@ -7,7 +7,7 @@ coarsest step are there from the first segment to the last: what a simulated rec
 import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,9 +45,9 @@ def window_on_one_grid(waveforms: Waveforms, start_s: float, stop_s: float) -> S
 
 
 def one_cycle_series(
-    waveforms: Waveforms, series: Callable[[Segment], Samples], frequency_hz: float
-) -> list[NDArray[np.float64]]:
-    """Series whose values are made of the cycle that ends at each sample, one array a segment.
+    waveforms: Waveforms, series: Callable[[Segment], NDArray[Any]], frequency_hz: float, cycles: int = 1
+) -> list[NDArray[Any]]:
+    """Series whose values are made of the cycle, or several, that end at each sample, one array a segment.
 
     At the beginning of a segment that cycle lies in the record before it, which is put on the segment's own grid: by
     picking samples where the record before is at the same step or a finer one, else by interpolation between
@@ -63,6 +63,8 @@ def one_cycle_series(
         Gives an array, shape (..., n), from a segment of n samples; NaN during its first cycle and a few samples.
     frequency_hz : float
         Frequency of the fundamental (Hz).
+    cycles : int
+        How many cycles a value is made of.
 
     Returns
     -------
@@ -72,7 +74,7 @@ def one_cycle_series(
     found = []
     for index, segment in enumerate(waveforms):
         values = series(segment)
-        if index > 0 and len(segment) and (head := _with_lead_in(waveforms, index, frequency_hz)) is not None:
+        if index > 0 and len(segment) and (head := _with_lead_in(waveforms, index, frequency_hz, cycles)) is not None:
             lead, extended = head
             known = series(extended)[..., lead:]
             values[..., : known.shape[-1]] = known
@@ -80,10 +82,10 @@ def one_cycle_series(
     return found
 
 
-def _with_lead_in(waveforms: Waveforms, index: int, frequency_hz: float) -> tuple[int, Segment] | None:
-    """First cycle of a segment behind the cycle before it, and how many samples the latter has; None if it has none."""
+def _with_lead_in(waveforms: Waveforms, index: int, frequency_hz: float, cycles: int) -> tuple[int, Segment] | None:
+    """First cycles of a segment behind as many before it, and how many samples the latter has; None if it has none."""
     segment = waveforms.segments[index]
-    needed = math.ceil(1 / (frequency_hz * segment.dt_s)) + _SPARE
+    needed = math.ceil(cycles / (frequency_hz * segment.dt_s)) + _SPARE
     start_s = segment.t0_s - needed * segment.dt_s
     near = [s for s in waveforms.segments[: index + 1] if s.end_s >= start_s]
     margin_s = INTERPOLATION_NODES * max(s.dt_s for s in near)

@@ -122,3 +122,6 @@ def test_trip_that_is_not_the_voltages_matter(bench, with_envelopes):
     made = bench(depth=0, duration_s=1.0, profile=with_envelopes(), scenario={"events": [ramp]}, p_sag_kw=500,
                  disconnected_after_s=0.3)  # fmt: skip
     assert made.check(KIND).status is Status.NOT_APPLICABLE
+    profile = with_envelopes(recovery_fraction=0.9, recovery_time_s=0.5)
+    less = bench(depth=0, duration_s=1.0, profile=profile, scenario={"events": [ramp]}, p_sag_kw=300, p_after_kw=300)
+    assert less.check(KIND).message == "connected throughout"

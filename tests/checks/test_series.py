@@ -4,17 +4,7 @@ import numpy as np
 import pytest
 
 from pvlvrt_compliance.checks.results import Status
-from pvlvrt_compliance.checks.series import lasting_median
 from pvlvrt_compliance.waveforms.container import Segment, Waveforms
-
-
-def test_lasting_median_counts_time_not_samples():
-    """Three samples of 1 ms at 0 last less than one of 4 ms at 1; with equal steps it is the plain median."""
-    steps_s = np.array([1e-3, 1e-3, 1e-3, 4e-3])
-    values = np.array([[0.0, 0.0, 0.0, 1.0], [2.0, 2.0, 2.0, np.nan]])
-    assert lasting_median(values, steps_s) == pytest.approx([1.0, np.nan], nan_ok=True)
-    plain = np.random.default_rng(1).normal(size=101)
-    assert lasting_median(plain, np.ones(101)) == np.median(plain)
 
 
 @pytest.mark.parametrize(("late_s", "status"), [(0.28, Status.PASS), (0.29, Status.FAIL)])

@@ -5,7 +5,15 @@ from pathlib import Path
 
 import pytest
 
+from pvlvrt_compliance.profile import Profile, known_profiles, load_profile
+
 HEAD = 'schema_version = 1\nid = "{name}"\ntitle = "a profile of a test"\n'
+
+
+@pytest.fixture(scope="session")
+def shipped() -> dict[str, Profile]:
+    """Every profile that ships."""
+    return {name: load_profile(name) for name in known_profiles()}
 
 
 @pytest.fixture

@@ -36,7 +36,7 @@ def test_unknown_name():
 @pytest.mark.parametrize("path", ["nowhere.toml", "no/where", "a\0b.toml", "x" * 5000 + ".toml"])
 def test_no_such_file(path):
     """A path without a file is a usage error that names the shipped profiles."""
-    with pytest.raises(UsageError, match="iec61400-21, spain-q-curve"):
+    with pytest.raises(UsageError, match=r"iec61400-21, .*spain-q-curve"):
         load_profile(path)
 
 
@@ -77,8 +77,8 @@ def test_house_style_of_an_error(write):
         load_profile(path)
     assert str(caught.value).splitlines() == [
         f"{path}: 2 problems",
-        "  requirements.ride_through.envelope.points: times must not decrease: 0.15 s is followed by 0.1 s",
-        '  requirements.ride_through.claus: unknown key; did you mean "clause"?',
+        f"  {path}:9: requirements.ride_through.envelope.points: times must not decrease: 0.15 s is followed by 0.1 s",
+        f'  {path}:7: requirements.ride_through.claus: unknown key; did you mean "clause"?',
     ]
 
 
@@ -118,7 +118,7 @@ def test_house_style_of_an_error(write):
         ("[procedure]\npoints_on_wave_deg.values = []", "points_on_wave_deg.values: "),
         ("[windows]\nduring_start_s.value = -1", "windows.during_start_s: must be 0 or above"),
         ("title2 = 1", 'title2: unknown key; did you mean "title"?'),
-        ("tests = 3", "tests[9]: must be a table, not 3"),
+        ("tests = 3", "tests: must be a list of tables, [[tests]], not 3"),
     ],
 )
 def test_wrong_values(write, text, problem):
@@ -162,21 +162,23 @@ def test_wrong_rows_of_the_test_table(write, old, new, problem):
     if problem is None:
         load_profile(write(text))
         return
-    assert any(line.startswith("tests[9].") and problem in line for line in problems_of(write(text)))
+    assert any(": tests[0]." in line and problem in line for line in problems_of(write(text)))
 
 
 def test_ids_occur_once(write):
     """Two tests of one id are refused."""
     text = ROW.format("points_on_wave_deg = [0]") * 2
-    assert problems_of(write(text)) == ("tests: the id 'T' occurs 2 times",)
+    path = write(text)
+    assert problems_of(path) == (f"{path}:17: tests[1].id: the id 'T' occurs twice",)
 
 
 def test_envelope_duration_without_an_envelope(write):
     """A test that lasts by the envelope needs one."""
     powers = f"[procedure.irradiance_w_m2]\nfull = {NUMBER.format(1000)}\n"
     text = powers + ROW.format("").replace("duration_s = 0.5", 'duration_s = "envelope"')
-    (problem,) = problems_of(write(text, include='["spain-q-curve"]'))
-    assert problem == 'tests[0].duration_s: "envelope" needs requirements.ride_through.envelope'
+    path = write(text, include='["spain-q-curve"]')
+    (problem,) = problems_of(path)
+    assert problem == f'{path}:12: tests[0].duration_s: "envelope" needs requirements.ride_through.envelope'
 
 
 @pytest.mark.parametrize("version", ["2", "'1'", "true", "1.5"])
@@ -184,7 +186,7 @@ def test_wrong_schema_version(write, version):
     """A schema version that this program does not read is named with the one it reads, beside all other problems."""
     head = f'schema_version = {version}\nid = "{{name}}"\ntitle = "t"\n'
     problems = problems_of(write("[conditions]\nfoo = 1", head=head))
-    assert problems[0].startswith("schema_version: ")
+    assert ":1: schema_version: " in problems[0]
     assert problems[0].endswith("this version of the program reads 1")
     assert len(problems) == 2
 
@@ -193,28 +195,29 @@ def test_missing_schema_version_of_an_included_file(write):
     """Each file states its own schema version; the problem names the file that does not."""
     write(name="base", head='id = "base"\ntitle = "t"\n')
     (problem,) = problems_of(write(include='["base"]'))
-    assert "base.toml: schema_version: missing" in problem
+    assert "base.toml:1: schema_version: missing" in problem
 
 
 def test_problem_of_an_included_file_names_it(write):
     """A wrong value that an included file brought in is shown with that file."""
     write("[conditions]\nfoo = 1\n", name="base")
     (problem,) = problems_of(write("[windows]\n", include='["base"]'))
-    assert "base.toml: conditions.foo: unknown key" in problem
+    assert "base.toml:6: conditions.foo: unknown key" in problem
 
 
 def test_missing_parts(write):
     """A file with nothing but its head lacks the parts that every profile has."""
-    missing = {line for line in problems_of(write(include="")) if line.endswith(": missing")}
-    assert missing == {"requirements: missing", "conditions: missing", "procedure: missing"}
+    path = write(include="")
+    missing = {line for line in problems_of(path) if line.endswith(": missing")}
+    assert missing == {f"{path}:1: {part}: missing" for part in ("requirements", "conditions", "procedure")}
 
 
 @pytest.mark.parametrize(
     ("include", "problem"),
     [
-        ('["nowhere"]', "include: there is no profile 'nowhere'"),
+        ('["nowhere"]', ":4: include[0]: there is no profile 'nowhere'"),
         ('["iec61400"]', 'did you mean "iec61400-21"'),
-        ('["../nowhere.toml"]', "include: there is no profile '../nowhere.toml'"),
+        ('["../nowhere.toml"]', ":4: include[0]: there is no profile '../nowhere.toml'"),
         ('"iec61400-21"', "include: must be a list"),
         ("[1]", "include: must be a list"),
         ('["mine"]', "without end: mine.toml includes mine.toml"),

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.errors import ProfileError, UsageError
 from pvlvrt_compliance.profile import Profile, load_profile
 from pvlvrt_compliance.profile.provenance import CONFIDENCES, weakest
 from pvlvrt_compliance.scenario.sag import Sag
@@ -166,3 +166,43 @@ def test_digest_is_of_the_content(tmp_path):
     assert digests[0] == digests[1] != digests[2]
     assert len(digests[0]) == 64
     assert all(math.isfinite(int(digest, 16)) for digest in digests)
+
+
+def test_frequency_of_a_profile(tmp_path):
+    """A profile names its grid's frequency for all of its tests; a row, and then the user, may name another."""
+    file = tmp_path / "mine.toml"
+    head = 'schema_version = 1\nid = "mine"\ntitle = "t"\ninclude = ["rey-boue-500kva"]\n[procedure]\n'
+    file.write_text(head + 'frequency_hz = { value = 60, confidence = "chosen", source = "a test" }\n')
+    mine = load_profile(str(file))
+    assert mine.ad_hoc_test(Sag(depth=0.9)).scenario.frequency_hz == 60
+    assert {test.scenario.frequency_hz for test in mine.tests()} == {50, 60}
+    assert {test.scenario.frequency_hz for test in mine.tests(frequency_hz=55.0)} == {55}
+
+
+STEPS = """schema_version = 1
+id = "mine"
+title = "t"
+include = ["iec61400-21"]
+[procedure.steps.swell]
+confidence = "chosen"
+source = "a test"
+[procedure.steps.swell.steps]
+A = { voltage_pu = 1.2, duration_s = 0.5 }
+[[tests]]
+id = "steps"
+clause = "c"
+steps = { table = "swell", order = "A", phases = "PHASES" }
+powers = ["full"]
+confidence = "chosen"
+source = "a test"
+"""
+
+
+def test_steps_of_some_phases_only_sag(tmp_path):
+    """A step above nominal voltage must be of all phases, since sags alone are of some phases."""
+    file = tmp_path / "mine.toml"
+    file.write_text(STEPS.replace("PHASES", "abc"))
+    assert load_profile(str(file)).tests()[-1].scenario.duration_s == 0.5
+    file.write_text(STEPS.replace("PHASES", "a"))
+    with pytest.raises(ProfileError, match=r"steps\.phases: a step to 1\.2 pu must be of all phases"):
+        load_profile(str(file))

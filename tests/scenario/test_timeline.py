@@ -86,6 +86,13 @@ def test_several_sags():
     assert found == [1, 0.5, 0.2, 0.5, 1]
 
 
+def test_sag_that_begins_with_the_disturbance():
+    """A further sag that begins with the sag of the test holds; so does the last listed of several."""
+    first, last = ({"kind": "sag", "t_s": 0, "duration_s": 0.1, "sag": {"depth": depth}} for depth in (0.8, 0.4))
+    assert abs(asked_sequences_pu(scenario(first), 0.35).positive) == pytest.approx(0.2)
+    assert abs(asked_sequences_pu(scenario(first, last), 0.35).positive) == pytest.approx(0.6)
+
+
 def test_grid_strength():
     """The grid is as strong as its last event says."""
     s = scenario({"kind": "grid_strength", "t_s": 0.5, "scr": 3.0}, scr=20.0)

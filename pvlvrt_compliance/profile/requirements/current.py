@@ -5,7 +5,7 @@ from typing import Literal
 from pydantic import Field
 
 from pvlvrt_compliance.profile.curves import RatioCurve, SupportCurve
-from pvlvrt_compliance.profile.provenance import Choice, Flag, Fraction, NotNegative, Positive
+from pvlvrt_compliance.profile.provenance import Choice, Flag, Fraction, NotNegative, Numbers, Positive
 from pvlvrt_compliance.profile.requirements.base import Requirement
 
 DeadBandMode = Literal["none", "shift", "step"]
@@ -45,6 +45,7 @@ class ReactiveCurrent(Requirement):
     """
 
     k: Positive
+    k_range: Numbers | None = Field(default=None, description="lowest and highest K that the code lets be set")
     dead_band_pu: NotNegative
     dead_band_mode: Choice[DeadBandMode]
     reference: Choice[Reference] = Field(description="what delta u counts from")

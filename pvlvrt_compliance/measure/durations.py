@@ -1,0 +1,20 @@
+"""Statistics over time, where samples stand for steps of different length."""
+
+import numpy as np
+
+from pvlvrt_compliance.waveforms.container import Samples
+
+
+def median_over_time(x: Samples, step_s: Samples) -> float:
+    """Value below which a signal is for half of the time.
+
+    Parameters
+    ----------
+    x : array, shape (n,)
+        Signal, finite, n at least 1.
+    step_s : array, shape (n,)
+        Time that each sample stands for (s).
+    """
+    order = np.argsort(x)
+    lasting_s = np.cumsum(step_s[order])
+    return float(x[order[np.searchsorted(lasting_s, 0.5 * lasting_s[-1])]])
