@@ -18,7 +18,7 @@ from pvlvrt_compliance.measure.power import (
     negative_sequence_current,
     sequence_current,
 )
-from pvlvrt_compliance.measure.sequences import phase_amplitudes, sequence_phasors
+from pvlvrt_compliance.measure.sequences import SequencePhasors, sequence_phasors
 from pvlvrt_compliance.measure.tracking import tracked_frequency
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.space_vectors import phases
@@ -81,12 +81,14 @@ class Series:
     @cached_property
     def voltage_phasors_pu(self) -> ComplexSamples:
         """One-cycle phasors of the phase-to-neutral voltages at the terminals, shape (3, n)."""
-        return self._phasors_pu("u")
+        return self._phases("u") / self.nominal.phase_voltage_peak_v
 
     @cached_property
     def no_load_phasors_pu(self) -> ComplexSamples | None:
         """The same of the source without the inverter's current, None in a record that has no such voltages."""
-        return self._phasors_pu("u0") if "u0_a_v" in self.waveforms.names else None
+        if "u0_a_v" not in self.waveforms.names:
+            return None
+        return self._phases("u0") / self.nominal.phase_voltage_peak_v
 
     @cached_property
     def tracked_frequency_hz(self) -> Samples:
@@ -95,15 +97,15 @@ class Series:
         Of the source where the record has its voltages: behind an impedance its current turns the terminals'.
         """
         kind = "u0" if "u0_a_v" in self.waveforms.names else "u"
-        return self._one_cycle(
+        found: Samples = self._one_cycle(
             lambda segment: tracked_frequency(segment, self.nominal.frequency_hz, kind), _TRACKING_CYCLES
         )
+        return found
 
     @cached_property
     def current_phase_pu(self) -> Samples:
         """One-cycle fundamental amplitudes of the phase currents, shape (3, n)."""
-        base = self.nominal.phase_current_peak_a
-        return self._one_cycle(lambda segment: phase_amplitudes(segment, "i", self.frequency_hz) / base)
+        return np.abs(self._phases("i")) / self.nominal.phase_current_peak_a
 
     @cached_property
     def reactive_current_pu(self) -> Samples:
@@ -132,12 +134,17 @@ class Series:
     @cached_property
     def active_power_kw(self) -> Samples:
         """One-cycle mean of P, shape (n,)."""
-        return self._one_cycle(lambda segment: self._cycle_mean(segment, instantaneous_power(segment).p)) / 1e3
+        return self._mean_powers.p / 1e3
 
     @cached_property
     def reactive_power_kvar(self) -> Samples:
         """One-cycle mean of Q, shape (n,)."""
-        return self._one_cycle(lambda segment: self._cycle_mean(segment, instantaneous_power(segment).q)) / 1e3
+        return self._mean_powers.q / 1e3
+
+    @cached_property
+    def _mean_powers(self) -> Power:
+        """One-cycle means of P (W) and Q (var)."""
+        return Power(*self._one_cycle(lambda s: self._cycle_mean(s, np.stack(instantaneous_power(s)))))
 
     @cached_property
     def instantaneous_kva(self) -> Power:
@@ -156,28 +163,33 @@ class Series:
 
     def sequence_pu(self, kind: str, index: int) -> Samples:
         """One-cycle amplitude of a sequence (0 positive, 1 negative) of the voltages ``u`` or ``u0``, shape (n,)."""
-        base = self.nominal.phase_voltage_peak_v
-        return self._one_cycle(lambda segment: np.abs(sequence_phasors(segment, kind, self.frequency_hz)[index]) / base)
+        return np.abs(self._sequences(kind)[index]) / self.nominal.phase_voltage_peak_v
 
     def joined(self, series: Callable[[Segment], Samples]) -> Samples:
         """What a function makes of each segment, one after the other, shape (..., n)."""
         return np.concatenate([series(segment) for segment in self.waveforms], axis=-1)
 
     def _sequence_current_pu(self, index: int, split: Callable[..., SequenceCurrent]) -> SequenceCurrent:
-        def in_segment(segment: Segment) -> Samples:
-            u, i = (sequence_phasors(segment, kind, self.frequency_hz)[index] for kind in "ui")
-            return np.stack(split(u, i)) / self.nominal.phase_current_peak_a
+        found = split(self._sequences("u")[index], self._sequences("i")[index])
+        return SequenceCurrent(*(x / self.nominal.phase_current_peak_a for x in found))
 
-        return SequenceCurrent(*self._one_cycle(in_segment))
+    def _phases(self, kind: str) -> ComplexSamples:
+        return np.asarray(phases(*self._sequences(kind)), dtype=np.complex128)
 
-    def _phasors_pu(self, kind: str) -> ComplexSamples:
-        def of_phases(segment: Segment) -> NDArray[Any]:
-            return np.stack(phases(*sequence_phasors(segment, kind, self.frequency_hz)))
+    def _sequences(self, kind: str) -> SequencePhasors:
+        """One-cycle phasors of the sequences, peak values in V or A; angles of the same sample can be compared."""
+        if kind not in self._found:
+            self._found[kind] = SequencePhasors(
+                *self._one_cycle(lambda segment: np.stack(sequence_phasors(segment, kind, self.frequency_hz)))
+            )
+        return self._found[kind]
 
-        return np.asarray(self._one_cycle(of_phases), dtype=np.complex128) / self.nominal.phase_voltage_peak_v
+    @cached_property
+    def _found(self) -> dict[str, SequencePhasors]:
+        return {}
 
     def _cycle_mean(self, segment: Segment, x: Samples) -> Samples:
         return one_cycle_mean(x, segment.dt_s, self.frequency_hz)
 
-    def _one_cycle(self, series: Callable[[Segment], Samples], cycles: int = 1) -> Samples:
+    def _one_cycle(self, series: Callable[[Segment], NDArray[Any]], cycles: int = 1) -> NDArray[Any]:
         return np.concatenate(one_cycle_series(self.waveforms, series, self.frequency_hz, cycles), axis=-1)

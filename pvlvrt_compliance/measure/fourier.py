@@ -5,6 +5,7 @@ from that sample and earlier ones, so a response never appears before its cause.
 """
 
 import math
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -51,8 +52,17 @@ class WholeCycles(NamedTuple):
 
 def turning(n: int, dt_s: float, frequency_hz: Frequency) -> ComplexSamples:
     """Return exp(-j 2 pi integral of f dt) at n samples, angle 0 at the first one; shape (n,)."""
-    cycles = running_integral(frequency_hz) if isinstance(frequency_hz, np.ndarray) else frequency_hz * np.arange(n)
-    turned: ComplexSamples = np.exp(-2j * np.pi * dt_s * cycles)
+    if isinstance(frequency_hz, np.ndarray):
+        turned: ComplexSamples = np.exp(-2j * np.pi * dt_s * running_integral(frequency_hz))
+        return turned
+    return _turning_steadily(n, dt_s, float(frequency_hz))
+
+
+@lru_cache(maxsize=4)
+def _turning_steadily(n: int, dt_s: float, frequency_hz: float) -> ComplexSamples:
+    # The same for all signals of a record, and dear.
+    turned: ComplexSamples = np.exp(-2j * np.pi * dt_s * frequency_hz * np.arange(n))
+    turned.flags.writeable = False
     return turned
 
 
