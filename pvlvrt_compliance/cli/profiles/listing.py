@@ -20,7 +20,7 @@ def list_profiles() -> int:
     from pvlvrt_compliance.profile.loading import load_profile
     from pvlvrt_compliance.profile.search_path import known_profiles
 
-    console = Console(highlight=False)
+    console = Console(highlight=False, markup=False, emoji=False)
     if not console.is_terminal and "COLUMNS" not in os.environ:
         console.width = _WIDTH_OF_A_FILE  # one profile a line, for grep
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
