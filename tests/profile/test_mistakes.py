@@ -318,6 +318,7 @@ TEMPTING = [
 def test_texts_stay_texts(tmp_path, monkeypatch, write, text):
     """What would be code elsewhere comes out as it went in, and nothing is run."""
     monkeypatch.chdir(tmp_path)
+    head = f"schema_version = 1\nid = 'x'\ntitle = '''{text}'''\n".replace("{", "{{").replace("}", "}}")
     profile = load_profile(write(f"{LIMIT}source = '''{text}'''", head=head))
     assert profile.title == text
     assert profile.requirements.dc_ripple.limit_percent.source == text
