@@ -55,8 +55,8 @@ class Panel(NamedTuple):
 
     @property
     def y_range(self) -> Point:
-        """Lowest and highest value of the vertical axis."""
-        low, high = _range([y for _, y in self._all_points()])
+        """Lowest and highest value of the vertical axis; zero is always on it."""
+        low, high = _range([0.0, *(y for _, y in self._all_points())])
         return low - 0.04 * (high - low), high + 0.06 * (high - low)
 
 

@@ -151,8 +151,8 @@ class _Drawing:
         self.floor = self.top + PANEL_HEIGHT
         self.left, self.right = float(LEFT), float(WIDTH - RIGHT)
         self.legend = [
-            *((area.shade, area.label) for area in panel.areas),
-            *((k, part.label) for k, part in enumerate(panel.lines)),
+            *((area.shade, area.label, True) for area in panel.areas),
+            *((k, line.label, False) for k, line in enumerate(panel.lines)),
         ]
         self.legend_top = self.floor + BOTTOM
         self.bottom = self.legend_top + LEGEND_ROW * len(self.legend) + 12
