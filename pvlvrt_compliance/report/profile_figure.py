@@ -13,6 +13,7 @@ from pvlvrt_compliance.resources import resource_folder
 
 COLOURS = ("#0a4f8f", "#b3161b", "#0b6b3a", "#7a4b00", "#7b1fa2", "#00707a", "#545c63")
 WIDTH, PANEL_HEIGHT, LEFT, RIGHT, TOP, BOTTOM, LEGEND_ROW = 760, 330, 66, 20, 34, 50, 17
+_CONFIG = {"displaylogo": False, "responsive": True}
 _HEAD, _HEAD_ROW, _LETTERS_A_LINE = 36.0, 18.0, 90
 
 
@@ -53,7 +54,9 @@ def render_html(profile: Profile, scale: Scale | None = None) -> str:
     for number, panel in enumerate(_panels(profile, scale)):
         figure = Figure(data=_traces(panel), layout=_layout(panel))
         include = "inline" if number == 0 else False
-        parts.append(figure.to_html(full_html=False, include_plotlyjs=include, div_id=f"figure-{number}"))
+        parts.append(
+            figure.to_html(full_html=False, include_plotlyjs=include, div_id=f"figure-{number}", config=_CONFIG)
+        )
     title = escape(f"{profile.id}: {profile.title}")
     head = f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title></head>'
     return f'{head}<body style="font-family: sans-serif"><h1>{title}</h1>{"".join(parts)}</body></html>\n'
@@ -128,6 +131,8 @@ def _layout(panel: Panel) -> dict[str, Any]:
         "xaxis": {"title": {"text": panel.x_label}, "type": panel.scale},
         "yaxis": {"title": {"text": panel.y_label}, "range": list(panel.y_range)},
         "legend": {"orientation": "h", "y": -0.25},
+        "showlegend": True,
+        "colorway": list(COLOURS),
         "height": 520,
     }
 
