@@ -173,7 +173,7 @@ def _progress(total: int, quiet: bool) -> Iterator[Callable[[str, int], None]]:
 
 
 def _show(results: Results, request: Request) -> None:
-    screen = Console(highlight=False)
+    screen = Console(highlight=False, markup=False, emoji=False)  # a profile's texts are shown as they are
     if request.quiet:
         screen.print(console.summary_line(results), soft_wrap=True)
         return

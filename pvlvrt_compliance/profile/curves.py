@@ -2,13 +2,15 @@
 
 from enum import StrEnum
 from itertools import pairwise
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from pydantic import AfterValidator, Field
 
 from pvlvrt_compliance.profile.provenance import Marked
+
+if TYPE_CHECKING:  # numpy takes longer to import than a profile takes to read: only what evaluates a curve imports it
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
 
 Point = tuple[float, float]
 Points = tuple[Point, ...]
@@ -37,7 +39,9 @@ class Side(StrEnum):
         return not quantity.startswith("highest" if self is Side.LOW else "lowest")
 
 
-def _columns(points: Points) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _columns(points: Points) -> "tuple[NDArray[np.float64], NDArray[np.float64]]":
+    import numpy as np
+
     table = np.asarray(points, dtype=np.float64)
     return table[:, 0], table[:, 1]
 
@@ -79,8 +83,10 @@ class Envelope(Marked):
     interpolation: Literal["linear", "step"]
     points: Annotated[Points, AfterValidator(_envelope_points)] = Field(min_length=1, description="[t_s, u_pu] each")
 
-    def voltage_at(self, t_s: ArrayLike) -> NDArray[np.float64]:
+    def voltage_at(self, t_s: "ArrayLike") -> "NDArray[np.float64]":
         """Level of the envelope (pu) at times since the start of the sag (s); shape of ``t_s``."""
+        import numpy as np
+
         times, levels = _columns(self.points)
         if self.interpolation == "linear":
             return np.asarray(np.interp(np.asarray(t_s, dtype=np.float64), times, levels))
@@ -109,8 +115,10 @@ class SupportCurve(Marked):
     clause: str = ""
     points: Annotated[Points, AfterValidator(_curve_points)] = Field(min_length=2, description="[u_pu, q_pu] each")
 
-    def reactive_power_at(self, u_pu: ArrayLike) -> NDArray[np.float64]:
+    def reactive_power_at(self, u_pu: "ArrayLike") -> "NDArray[np.float64]":
         """Reactive power (pu) at voltages (pu), straight lines between the points; shape of ``u_pu``."""
+        import numpy as np
+
         voltages, powers = _columns(self.points)
         return np.asarray(np.interp(np.asarray(u_pu, dtype=np.float64), voltages, powers))
 
@@ -121,7 +129,9 @@ class RatioCurve(Marked):
     clause: str = ""
     points: Annotated[Points, AfterValidator(_curve_points)] = Field(min_length=2, description="[u_pu, share] each")
 
-    def share_at(self, u_pu: ArrayLike) -> NDArray[np.float64]:
+    def share_at(self, u_pu: "ArrayLike") -> "NDArray[np.float64]":
         """Share at voltages (pu), straight lines between the points; shape of ``u_pu``."""
+        import numpy as np
+
         voltages, shares = _columns(self.points)
         return np.asarray(np.interp(np.asarray(u_pu, dtype=np.float64), voltages, shares))

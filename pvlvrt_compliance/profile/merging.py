@@ -40,7 +40,7 @@ class Merged(NamedTuple):
 
     def describe(self, location: Location, text: str) -> str:
         """A problem of the resolved profile, told at the file, line and key that it comes from."""
-        source, place = max(reversed(self._places(location)), key=lambda found: _depth(found[0].table, found[1]))
+        source, place = max(reversed(self._places(location)), key=lambda found: _depth(*_within(*found)))
         return source.problem(place, text)
 
     def _places(self, location: Location) -> list[tuple[Source, Location]]:
@@ -158,13 +158,20 @@ def _merge(base: Table, over: Table) -> Table:
     return base | over | {key: _merge(base[key], over[key]) for key in both_tables}
 
 
+def _within(source: Source, location: Location) -> tuple[Any, Location]:
+    """What a location is of: a row of the test table, or the file."""
+    match location:
+        case ("tests", int(index), *rest):
+            return source.table["tests"][index], tuple(rest)
+    return source.table, location
+
+
 def _depth(content: Any, location: Location) -> int:
-    """How many steps of a location a table has."""
+    """How many steps of a location a file decides: those that it has; all, once it has something that is no table."""
     for depth, part in enumerate(location):
-        is_there = (isinstance(content, dict) and part in content) or (
-            isinstance(content, list) and isinstance(part, int) and part < len(content)
-        )
-        if not is_there:
+        if not isinstance(content, dict):
+            break
+        if part not in content:
             return depth
         content = content[part]
     return len(location)

@@ -105,8 +105,15 @@ def _in_words(problem: Any, model: type[BaseModel]) -> str:
         return _unknown_key(str(location[-1]), known_keys(model, location[:-1]))
     if kind == "value_error":
         return str(problem["ctx"]["error"])
+    if kind in {"too_short", "too_long"} and "actual_length" in problem["ctx"]:
+        return _length(**problem["ctx"])
     words = _WORDS.get(kind) or problem["msg"].removeprefix("Input ").replace("should", "must", 1)
     return f"{words}, not {_shown(problem['input'])}" if kind not in _WORDS or kind in _SHOW_INPUT else words
+
+
+def _length(actual_length: int | None, min_length: int = 0, max_length: int | None = None, **_: Any) -> str:
+    bound = f"at least {min_length}" if max_length is None else f"at most {max_length}"
+    return f"must have {bound} elements, not {actual_length}"
 
 
 def _shown(value: Any) -> str:

@@ -12,7 +12,7 @@ from pvlvrt_compliance.profile.catalogue import expand, make_scenario, sag_durat
 from pvlvrt_compliance.profile.corners import corner_rows
 from pvlvrt_compliance.profile.curves import Envelope
 from pvlvrt_compliance.profile.procedure import Conditions, Detection, Procedure, TestCase, TestRow, Windows
-from pvlvrt_compliance.profile.provenance import VERIFIED, Frozen, canonical_json, marks_in
+from pvlvrt_compliance.profile.provenance import VERIFIED, Frozen, canonical_json, marks_in, weakest
 from pvlvrt_compliance.profile.requirements import Requirements
 from pvlvrt_compliance.scenario.sag import Sag
 
@@ -50,6 +50,11 @@ class Profile(Frozen):
     def digest(self) -> str:
         """SHA-256 of the resolved profile: the same numbers give the same digest, whatever the layout of the file."""
         return hashlib.sha256(canonical_json(self).encode()).hexdigest()
+
+    @property
+    def weakest_mark(self) -> str:
+        """The weakest mark of anything in the profile, its test table included."""
+        return weakest([*(item.confidence for _, item in marks_in(self)), *(row.confidence for row in self.all_rows)])
 
     def sag_duration_s(self, sag: Sag) -> float:
         """How long the envelope asks a sag to be ridden through (s), by its V+ without the inverter's current.

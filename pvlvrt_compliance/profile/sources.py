@@ -3,6 +3,7 @@
 import json
 import re
 import tomllib
+from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,9 @@ _LONG_KEY = re.compile(rf"(?:^|(?<=[\s\[{{,]))(?:{_PART}[ \t]*+\.[ \t]*+){{32}}"
 _PLACE = re.compile(r" \(at (?:line (\d+), column \d+|end of document)\)$")
 _KEY_ON_LINE = re.compile(r"""\s*\[{0,2}\s*((?:[\w.-]|"[^"]*"|'[^']*')+)\s*[]=]""")
 _YAML_LINE = re.compile(r"(?:---|%YAML|- |[\w-]+:(?:\s|$))")
+
+# What a terminal would act on when the text is shown, and what XML cannot hold.
+_CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff]")
 
 Table = dict[str, Any]
 
@@ -78,7 +82,9 @@ class Source:
             raise self._syntax_error(str(error)) from None
         deep = _too_deep(table)
         if deep is not None:
-            raise ProfileError(self.origin, [self.problem(deep[:1], "nested too deeply")])
+            raise ProfileError(self.origin, [f"{self.origin}:{self.line_of(deep)}: {deep[0]}: nested too deeply"])
+        for location, what in _control_characters(table, ()):
+            raise ProfileError(self.origin, [self.problem(location, f"{what} must not have control characters")])
         return table
 
     def _syntax_error(self, message: str) -> ProfileError:
@@ -119,3 +125,17 @@ def _too_deep(table: Table) -> Location | None:
             if isinstance(value, (dict, list))
         ]
     return level[0][0] if level else None
+
+
+def _control_characters(content: Any, location: Location) -> Iterator[tuple[Location, str]]:
+    """Where control characters are; of a key that has them, the table."""
+    if isinstance(content, str) and _CONTROL.search(content):
+        yield location, "a text"
+    elif isinstance(content, dict):
+        for key, value in content.items():
+            if _CONTROL.search(key):
+                yield location, "a key"
+            yield from _control_characters(value, (*location, key))
+    elif isinstance(content, list):
+        for index, value in enumerate(content):
+            yield from _control_characters(value, (*location, index))

@@ -143,6 +143,19 @@ def test_packages_bring_profiles(write, tmp_path, entry_point, form):
     assert known_profiles()["spain-q-curve"].origin == "shipped"
 
 
+def test_an_installed_package_brings_profiles(write, tmp_path, monkeypatch):
+    """A package with the metadata of an installation is found by its entry point and named as the origin."""
+    folder, metadata = tmp_path / "company_codes", tmp_path / "company_grid_codes-1.0.dist-info"
+    folder.mkdir()
+    metadata.mkdir()
+    (folder / "__init__.py").write_text("")
+    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: company-grid-codes\nVersion: 1.0\n")
+    (metadata / "entry_points.txt").write_text(f"[{ENTRY_POINT_GROUP}]\ncompany = company_codes\n")
+    write(name="company_codes/plant")
+    monkeypatch.syspath_prepend(tmp_path)
+    assert known_profiles()["plant"] == (folder / "plant.toml", "package company-grid-codes")
+
+
 @pytest.mark.parametrize("announced", [lambda: "nowhere", lambda: 1 / 0, None], ids=["no folder", "error", "nothing"])
 def test_an_entry_point_that_is_broken_is_named(entry_point, announced):
     """Shipped profiles load in spite of it; an unknown name meets it."""

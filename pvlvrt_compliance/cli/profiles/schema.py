@@ -1,0 +1,15 @@
+"""`pvlvrt-check profiles schema`."""
+
+
+def schema() -> None:
+    """Print the JSON Schema of a profile's file, for editors that complete and check TOML as it is written.
+
+    An editor finds it by a first line such as: #:schema ./profile.schema.json
+
+    Example: pvlvrt-check profiles schema > profile.schema.json
+    """
+    import json
+
+    from pvlvrt_compliance.profile.schema import file_schema
+
+    print(json.dumps(file_schema(), indent=2))

@@ -1,0 +1,24 @@
+"""`pvlvrt-check profiles show`."""
+
+from typing import Annotated
+
+import typer
+
+
+def show(
+    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A profile.", show_default=False)],
+    json: Annotated[bool, typer.Option("--json", metavar="", help="The resolved profile, for programs.")] = False,
+) -> None:
+    """Print a profile in words: every demand with its clause, every number with its mark, every test.
+
+    Example: pvlvrt-check profiles show iec61400-21 | less
+    """
+    from pvlvrt_compliance.profile.loading import load_profile
+
+    profile = load_profile(name)
+    if json:
+        print(profile.model_dump_json(by_alias=True, exclude_none=True, indent=2))
+        return
+    from pvlvrt_compliance.report.profile_words import render
+
+    print(render(profile), end="")
