@@ -143,6 +143,10 @@ def check(
     csv: Annotated[
         bool, typer.Option("--csv", metavar="", help="Write waveforms as CSV, too.", rich_help_panel=_OUTPUT)
     ] = False,
+    waveforms: Annotated[
+        str,
+        typer.Option(metavar="WHICH", help="Waveforms kept: all, failed or none.", rich_help_panel=_OUTPUT),
+    ] = "all",
     exit_zero: Annotated[
         bool,
         typer.Option("--exit-zero", metavar="", help="End with 0 whatever the verdicts.", rich_help_panel=_OUTPUT),
@@ -177,6 +181,7 @@ def check(
         include_long=include_long,
         output=output,
         csv=csv,
+        waveforms=waveforms,
         exit_zero=exit_zero,
         quiet=quiet,
         command=context.obj or ("pvlvrt-check",),

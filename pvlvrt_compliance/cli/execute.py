@@ -5,7 +5,7 @@ from contextlib import contextmanager, suppress
 from datetime import datetime
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn
@@ -13,7 +13,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn
 from pvlvrt_compliance.checks.evaluate import summarise
 from pvlvrt_compliance.checks.results import EXIT_STATUS, Results, TestResult, conclude
 from pvlvrt_compliance.cli.output import RESULTS, WAVEFORMS, OutputFolder
-from pvlvrt_compliance.cli.request import Job, Request
+from pvlvrt_compliance.cli.request import KEEP_ALL, KEEP_FAILED, Job, Request
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.provenance import CHOSEN
@@ -27,6 +27,9 @@ from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms import Waveforms
 from pvlvrt_compliance.waveforms.comtrade import write_comtrade
 from pvlvrt_compliance.waveforms.csv import write_csv
+
+if TYPE_CHECKING:
+    from pvlvrt_compliance.study.run import Judged
 
 _INTERRUPTED_STATUS = 130
 
@@ -66,25 +69,31 @@ class _Run:
         with _progress(len(self.job.tests), self.request.quiet) as advance:
             # The simulator is compiled, or read from its cache, on this import and on the first run.
             from pvlvrt_compliance.simulation.simulate import simulate
-            from pvlvrt_compliance.simulation.translate import nominal_of
             from pvlvrt_compliance.study.rows import run_rows
-            from pvlvrt_compliance.study.run import Judged, run_test
+            from pvlvrt_compliance.study.run import run_test
             from pvlvrt_compliance.study.sharing import SharedSimulator, rows_of, shared_together
 
-            simulator = SharedSimulator(simulate, self.job.tests)
+            rows = shared_together(rows_of(self.job.tests))
+            in_order = [item for row in rows for item in row]
+            with SharedSimulator(simulate, in_order, self.job.parameters) as simulator:
 
-            def judge_one(profile: Profile, test: TestCase) -> Judged:
-                advance(f"{profile.id} {test.id}", len(self.finished))
-                return run_test(profile, test, self.job.parameters, simulator)
+                def judge_one(profile: Profile, test: TestCase) -> "Judged":
+                    advance(f"{profile.id} {test.id}", len(self.finished))
+                    return run_test(profile, test, self.job.parameters, simulator)
 
-            for row in shared_together(rows_of(self.job.tests)):
-                profile = row[0].profile
-                for test, judged in run_rows(profile, [item.test for item in row], partial(judge_one, profile)):
-                    result, waveforms = judged
-                    if waveforms is not None:
-                        nominal = nominal_of(self.job.parameters, test.scenario)
-                        result = self._keep(result, waveforms, Assignment(profile, test), nominal)
-                    self.finished.append(result)
+                for row in rows:
+                    profile = row[0].profile
+                    for test, judged in run_rows(profile, [item.test for item in row], partial(judge_one, profile)):
+                        self._finish(Assignment(profile, test), judged)
+
+    def _finish(self, item: Assignment, judged: "Judged") -> None:
+        """Write and draw the record of a test that has run."""
+        from pvlvrt_compliance.simulation.translate import nominal_of
+
+        result, waveforms = judged
+        if waveforms is not None:
+            result = self._keep(result, waveforms, item, nominal_of(self.job.parameters, item.test.scenario))
+        self.finished.append(result)
 
     def results(self) -> Results:
         """What is finished, as one result object, in the order of the profiles."""
@@ -119,15 +128,26 @@ class _Run:
         log.print(f"interrupted; {count} were finished and are kept in {place}", soft_wrap=not log.is_terminal)
 
     def _keep(self, result: TestResult, waveforms: Waveforms, item: Assignment, nominal: Nominal) -> TestResult:
-        profile, scenario = item.profile, item.test.scenario
-        if scenario not in self.files:
-            self.files[scenario] = result.key if len(self.job.profiles) > 1 else result.id
-            self._write(waveforms, self.files[scenario], item, nominal)
+        profile = item.profile
         envelope = profile.envelope
         points = envelope.points if envelope and envelope.voltage_quantity == "positive_sequence" else None
         buckets = buckets_for(len(self.job.tests))
+        if self._wants_waveforms(result):
+            result = result.model_copy(update={"waveforms": self._file_of(waveforms, result, item, nominal)})
         self.figures[result.key] = test_figure(waveforms, result, nominal, points, _limits(profile), buckets)
-        return result.model_copy(update={"waveforms": f"{WAVEFORMS}/{self.files[scenario]}.cfg"})
+        return result
+
+    def _wants_waveforms(self, result: TestResult) -> bool:
+        kept = self.request.waveforms
+        return kept == KEEP_ALL or (kept == KEEP_FAILED and EXIT_STATUS[result.status] != 0)
+
+    def _file_of(self, waveforms: Waveforms, result: TestResult, item: Assignment, nominal: Nominal) -> str:
+        """Path of the record in the output folder; it is written once for all tests of its scenario."""
+        scenario = item.test.scenario
+        if scenario not in self.files:
+            self.files[scenario] = result.key if len(self.job.profiles) > 1 else result.id
+            self._write(waveforms, self.files[scenario], item, nominal)
+        return f"{WAVEFORMS}/{self.files[scenario]}.cfg"
 
     def _write(self, waveforms: Waveforms, name: str, item: Assignment, nominal: Nominal) -> None:
         write_comtrade(

@@ -31,6 +31,8 @@ _OPTIONS = {
 ALL = "all"
 """In place of a name: every profile that ships or is found."""
 
+KEEP_ALL, KEEP_FAILED, KEEP_NONE = WAVEFORMS_KEPT = ("all", "failed", "none")
+
 _PHASES = ("abc", "a", "b", "c", *PAIRS)
 _TYPES = get_args(Type)
 
@@ -60,6 +62,7 @@ class Request(NamedTuple):
     include_long: bool
     output: str
     csv: bool
+    waveforms: str
     exit_zero: bool
     quiet: bool
     command: tuple[str, ...]
@@ -82,6 +85,8 @@ def prepare(request: Request) -> Job:
     PvlvrtError
         When a profile, an option or the selection cannot be used.
     """
+    if request.waveforms not in WAVEFORMS_KEPT:
+        raise UsageError(f"--waveforms {request.waveforms}: allowed are {', '.join(WAVEFORMS_KEPT)}")
     profiles = _profiles(request.profiles)
     parameters = _parameters(request)
     try:

@@ -1,7 +1,9 @@
 """Several profiles judge one run: each scenario is simulated once."""
 
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Iterable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Self
 
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
@@ -31,29 +33,55 @@ def shared_together(rows: Sequence[tuple[Assignment, ...]]) -> list[tuple[Assign
 
 
 class SharedSimulator:
-    """A simulator that keeps a record for as long as another of the tests it was told of has the same scenario.
+    """A simulator that makes one record a scenario, and the next while the one before is judged.
+
+    A record is kept for as long as another of the tests it was told of has the same scenario. The compiled loop leaves
+    Python alone while it runs, so that a thread is enough to use a second core.
 
     Parameters
     ----------
     simulator : callable
         What makes the records.
     assignments : iterable of Assignment
-        All tests that will be run.
+        All tests that will be run, in order.
+    parameters : Parameters
+        Of all runs.
     """
 
-    def __init__(self, simulator: Simulator, assignments: Iterable[Assignment]) -> None:
+    def __init__(self, simulator: Simulator, assignments: Iterable[Assignment], parameters: Parameters) -> None:
+        scenarios = [assignment.test.scenario for assignment in assignments]
         self._simulator = simulator
-        self._wanted = Counter(assignment.test.scenario for assignment in assignments)
+        self._parameters = parameters
+        self._wanted = Counter(scenarios)
+        self._to_come = deque(dict.fromkeys(scenarios))
         self._kept: dict[Scenario, Waveforms] = {}
+        self._ahead: dict[Scenario, Future[Waveforms]] = {}
+        self._pool = ThreadPoolExecutor(max_workers=1, thread_name_prefix="simulate")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._pool.shutdown(wait=False, cancel_futures=True)
 
     def __call__(self, scenario: Scenario, parameters: Parameters) -> Waveforms:
         """The record of a scenario, simulated unless it is at hand; an error of the simulator is raised each time."""
         self._wanted[scenario] -= 1
         waveforms = self._kept.get(scenario)
         if waveforms is None:
-            waveforms = self._simulator(scenario, parameters)
+            ahead = self._ahead.pop(scenario, None)
+            waveforms = ahead.result() if ahead else self._simulator(scenario, parameters)
         if self._wanted[scenario] > 0:
             self._kept[scenario] = waveforms
         else:
             self._kept.pop(scenario, None)
+        self._begin_next(scenario)
         return waveforms
+
+    def _begin_next(self, done: Scenario) -> None:
+        """Begin with the first scenario to come that nobody has begun with."""
+        if done in self._to_come:
+            self._to_come.remove(done)
+        if self._to_come and not self._ahead:
+            following = self._to_come.popleft()
+            self._ahead[following] = self._pool.submit(self._simulator, following, self._parameters)

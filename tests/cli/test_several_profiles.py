@@ -102,3 +102,20 @@ def test_long_tests_are_left_out_and_named(command, reports, tmp_path):
     alone = command("--profile", file, "--test", "LON*")
     assert alone.status == 2
     assert "--include-long" in alone.err
+
+
+@pytest.mark.parametrize(("kept", "files"), [("all", 2), ("failed", 1), ("none", 0)])
+def test_which_waveforms_are_kept(command, reports, tmp_path, kept, files):
+    """All, those of tests that are not passed, or none; a test without says so and still has its figure."""
+    tests = ("--test", "VD1-full-1", "--test", "VD3-full-1")
+    assert command("--profile", "iec61400-21", *tests, "--waveforms", kept, "--output", tmp_path).status == 1
+    found = reports(tmp_path)
+    assert len([name for name in found.files if name.endswith(".cfg")]) == files
+    assert sum(test["waveforms"] is not None for test in found.json["tests"]) == files
+    assert len(found.page.xpath("//div[@class='plot']")) == 2
+
+
+def test_waveforms_of_an_unknown_kind(command):
+    """What is allowed is named."""
+    ended = command("--profile", "iec61400-21", "--sag", "50%", "--waveforms", "some")
+    assert (ended.status, "all, failed, none" in ended.err) == (2, True)
