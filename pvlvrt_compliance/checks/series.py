@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_mean
+from pvlvrt_compliance.measure.fourier import ComplexSamples, Frequency, one_cycle_mean
 from pvlvrt_compliance.measure.frequency import frequency_before
 from pvlvrt_compliance.measure.power import (
     VOLTAGE_FLOOR_V,
@@ -19,7 +19,8 @@ from pvlvrt_compliance.measure.power import (
     sequence_current,
 )
 from pvlvrt_compliance.measure.sequences import SequencePhasors, sequence_phasors
-from pvlvrt_compliance.measure.tracking import tracked_frequency
+from pvlvrt_compliance.measure.tracking import steering_frequency, tracked_frequency
+from pvlvrt_compliance.scenario.events import FrequencyRamp, FrequencyStep, Recording
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.space_vectors import phases
 from pvlvrt_compliance.units import Nominal
@@ -30,6 +31,7 @@ Mask = NDArray[np.bool_]
 
 _SAME_INSTANT_S = 1e-9
 _TRACKING_CYCLES = 4  # that a tracked frequency rests on, and settles in
+_STEERING_CYCLES = 8  # that the frequency of one-cycle windows rests on, and settles in
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,7 +146,14 @@ class Series:
     @cached_property
     def _mean_powers(self) -> Power:
         """One-cycle means of P (W) and Q (var)."""
-        return Power(*self._one_cycle(lambda s: self._cycle_mean(s, np.stack(instantaneous_power(s)))))
+        return Power(
+            *self._one_cycle(
+                lambda segment: one_cycle_mean(
+                    np.stack(instantaneous_power(segment)), segment.dt_s, self._window_hz(segment)
+                ),
+                1 if self._is_steady else _STEERING_CYCLES,
+            )
+        )
 
     @cached_property
     def instantaneous_kva(self) -> Power:
@@ -180,7 +189,10 @@ class Series:
         """One-cycle phasors of the sequences, peak values in V or A; angles of the same sample can be compared."""
         if kind not in self._found:
             self._found[kind] = SequencePhasors(
-                *self._one_cycle(lambda segment: np.stack(sequence_phasors(segment, kind, self.frequency_hz)))
+                *self._one_cycle(
+                    lambda segment: np.stack(sequence_phasors(segment, kind, self._window_hz(segment))),
+                    1 if self._is_steady else _STEERING_CYCLES,
+                )
             )
         return self._found[kind]
 
@@ -188,8 +200,17 @@ class Series:
     def _found(self) -> dict[str, SequencePhasors]:
         return {}
 
-    def _cycle_mean(self, segment: Segment, x: Samples) -> Samples:
-        return one_cycle_mean(x, segment.dt_s, self.frequency_hz)
+    @property
+    def _is_steady(self) -> bool:
+        """Whether the grid keeps its frequency: one-cycle windows then go by the one measured before the sag."""
+        moving = (FrequencyStep, FrequencyRamp, Recording)
+        return not any(isinstance(event, moving) for event in self.scenario.events)
+
+    def _window_hz(self, segment: Segment) -> Frequency:
+        """Frequency that one-cycle windows go by (Hz)."""
+        if self._is_steady:
+            return self.frequency_hz
+        return steering_frequency(segment, "u", self.nominal.frequency_hz)[0]
 
     def _one_cycle(self, series: Callable[[Segment], NDArray[Any]], cycles: int = 1) -> NDArray[Any]:
         return np.concatenate(one_cycle_series(self.waveforms, series, self.frequency_hz, cycles), axis=-1)

@@ -37,7 +37,7 @@ def render(results: Results) -> RenderableType:
     """
     summary = Text(summary_line(results), style=_STYLE[results.status])
     if len(results.tests) > _MANY_TESTS:
-        return Group(overview_table(results), Text(), summary)
+        return Group(overview_table(results), Text(), *_not_passed(results), Text(), summary)
     parts: list[RenderableType] = [verdict_table(results), Text()]
     found = findings(results)
     if found:
@@ -46,21 +46,38 @@ def render(results: Results) -> RenderableType:
 
 
 def overview_table(results: Results) -> Table:
-    """How many verdicts of each kind every check has, by profile, and the first tests that are not passed."""
+    """How many verdicts of each kind every check has, by profile."""
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=0)
-    table.add_column("profile / check", no_wrap=True)
+    table.add_column("profile / check", no_wrap=True, min_width=28)
     for status in Status:
-        table.add_column(_SHORT[status], justify="right", no_wrap=True)
-    table.add_column("not passed in", overflow="ellipsis", no_wrap=True)
-    for profile in dict.fromkeys(test.profile for test in results.tests):
-        tests = [test for test in results.tests if test.profile == profile]
+        table.add_column(_SHORT[status], justify="right", no_wrap=True, min_width=6)
+    for profile, tests in _by_profile(results):
         title = f"{profile}: {len(tests)} test{'' if len(tests) == 1 else 's'}"
-        table.add_row(Text(title, style="bold"), *_counts(test.status for test in tests), "")
+        table.add_row(Text(title, style="bold"), *_counts(test.status for test in tests))
         for name in dict.fromkeys(check.check for test in tests for check in verdicts(test)):
-            found = [(test, check.status) for test in tests for check in verdicts(test) if check.check == name]
-            bad = [test.id for test, status in found if EXIT_STATUS[status]]
-            table.add_row(Text(f"  {name}"), *_counts(status for _, status in found), Text(", ".join(bad)))
+            found = [check.status for test in tests for check in verdicts(test) if check.check == name]
+            table.add_row(Text(f"  {name}"), *_counts(found))
     return table
+
+
+def _by_profile(results: Results) -> list[tuple[str, list[TestResult]]]:
+    names = dict.fromkeys(test.profile for test in results.tests)
+    return [(name, [test for test in results.tests if test.profile == name]) for name in names]
+
+
+def _not_passed(results: Results) -> list[Text]:
+    """A line for each check of a profile that is not passed everywhere: where it is not."""
+    where: dict[tuple[Status, str, str], list[str]] = {}
+    for profile, tests in _by_profile(results):
+        for test in tests:
+            for check in verdicts(test):
+                if EXIT_STATUS[check.status]:
+                    where.setdefault((check.status, profile, check.check), []).append(test.id)
+    lines = sorted(where.items(), key=lambda item: list(Status).index(item[0][0]))
+    return [
+        Text.assemble((f"{spell.STATUS_WORD[status]}: {name} in {profile}: ", _STYLE[status]), ", ".join(ids))
+        for (status, profile, name), ids in lines
+    ]
 
 
 def _counts(statuses: Iterable[Status]) -> list[Text]:
@@ -76,7 +93,7 @@ def verdict_table(results: Results) -> Table:
     for heading in ("measured", "limit", "margin"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("verdict", no_wrap=True)
-    table.add_column("clause", overflow="fold", min_width=6)
+    table.add_column("clause", overflow="ellipsis", no_wrap=True, min_width=6)
     table.add_column("confidence", no_wrap=True)
     for test in results.tests:
         if several:
