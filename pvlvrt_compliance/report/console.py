@@ -28,6 +28,7 @@ _STYLE = {
 
 
 _MANY_TESTS = 60
+_SHORT_CLAUSE = 24  # characters
 
 
 def render(results: Results) -> RenderableType:
@@ -93,7 +94,9 @@ def verdict_table(results: Results) -> Table:
     for heading in ("measured", "limit", "margin"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("verdict", no_wrap=True)
-    table.add_column("clause", overflow="ellipsis", no_wrap=True, min_width=6)
+    longest = max((len(check.clause) for test in results.tests for check in verdicts(test)), default=0)
+    # A few words may stand below one another; a whole sentence in a narrow column helps nobody, the report has it.
+    table.add_column("clause", overflow="fold", min_width=6, no_wrap=longest > _SHORT_CLAUSE)
     table.add_column("confidence", no_wrap=True)
     for test in results.tests:
         if several:

@@ -26,6 +26,10 @@ class _SummaryTable(NamedTuple):
     check_names: list[str]
     tests: list[tuple[int, TestResult]]
 
+    def count(self, status: Status) -> int:
+        """How many of the tests have this verdict."""
+        return sum(test.status is status for _, test in self.tests)
+
 
 def render(results: Results, figures: Mapping[str, Mapping[str, Any]]) -> str:
     """Return the report as one HTML document.
@@ -52,6 +56,7 @@ def render(results: Results, figures: Mapping[str, Mapping[str, Any]]) -> str:
             counts=counts(results),
             findings=findings(results),
             tables=_summary_tables(results),
+            statuses=list(Status),
             marks=_marks(results),
             provenance=provenance_groups(results.provenance),
             figures={name: _json(figure) for name, figure in used.items()},
