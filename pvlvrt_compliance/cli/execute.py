@@ -42,10 +42,10 @@ def execute(request: Request, job: Job) -> int:
         results = run.write_reports()
         run.output.finish()
     except KeyboardInterrupt:
-        run.keep_interrupted()
+        run.keep_unfinished("interrupted")
         return _INTERRUPTED_STATUS
     except BaseException:
-        run.output.discard()
+        run.keep_unfinished("stopped by an error of the program")
         raise
     with suppress(SystemExit):  # rich ends the program when the reader of stdout has gone; the verdict still stands
         _show(results, request)
@@ -115,17 +115,17 @@ class _Run:
         self.output.write("report.html", html.render(results, self.figures))
         return results
 
-    def keep_interrupted(self) -> None:
+    def keep_unfinished(self, why: str) -> None:
         """Keep the finished tests apart from the reports of the last whole run, and say where."""
         log = Console(stderr=True, highlight=False)
         count = f"{len(self.finished)} of {len(self.job.tests)} tests"
         if not self.finished:
             self.output.discard()
-            log.print(f"interrupted; {count} were finished, nothing was written")
+            log.print(f"{why}; {count} were finished, nothing was written")
             return
         self.output.write(RESULTS, results_json.render(self.results()))
         place = self.output.keep_interrupted()
-        log.print(f"interrupted; {count} were finished and are kept in {place}", soft_wrap=not log.is_terminal)
+        log.print(f"{why}; {count} were finished and are kept in {place}", soft_wrap=not log.is_terminal)
 
     def _keep(self, result: TestResult, waveforms: Waveforms, item: Assignment, nominal: Nominal) -> TestResult:
         profile = item.profile

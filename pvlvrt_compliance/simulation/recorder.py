@@ -16,7 +16,7 @@ SHORT_RECORD_S = 5.0
 BEFORE_S, AFTER_S = 0.35, 1.5
 """Every control period is recorded this long before and after whatever happens (s), and this long before the end."""
 
-MOST_ROWS = 1_200_000
+MOST_ROWS = 500_000
 """Rows that a record is kept to, as far as `LEAST_RATE_HZ` allows: 23 channels of them are 0.22 GB."""
 
 THIN_RATE_HZ = 3000.0
