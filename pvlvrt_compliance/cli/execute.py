@@ -44,6 +44,9 @@ def execute(request: Request, job: Job) -> int:
     except KeyboardInterrupt:
         run.keep_unfinished("interrupted")
         return _INTERRUPTED_STATUS
+    except OSError:  # nothing can be written there: nothing can be kept there
+        run.output.discard()
+        raise
     except BaseException:
         run.keep_unfinished("stopped by an error of the program")
         raise

@@ -17,7 +17,7 @@ BEFORE_S, AFTER_S = 0.35, 1.5
 """Every control period is recorded this long before and after whatever happens (s), and this long before the end."""
 
 MOST_ROWS = 500_000
-"""Rows that a record is kept to, as far as `LEAST_RATE_HZ` allows: 23 channels of them are 0.22 GB."""
+"""Rows that a record is kept to, as far as `LEAST_RATE_HZ` allows: 23 channels of them are 0.09 GB."""
 
 THIN_RATE_HZ = 3000.0
 """Samples a second that are left elsewhere, at least ..."""

@@ -100,8 +100,8 @@ def test_interrupted_twice(command, reports, interrupt_at, folder):
     assert (folder / "report.html").read_text("utf-8") == OLD
 
 
-def test_crash_in_the_middle(command, monkeypatch, folder):
-    """An error of the program itself, late in a run, leaves the old report and no debris."""
+def test_crash_in_the_middle(command, reports, monkeypatch, folder):
+    """An error of the program itself, late in a run, leaves the old report and keeps what was finished apart."""
 
     def crash(*_arguments):
         raise RuntimeError("a bug")
@@ -109,8 +109,9 @@ def test_crash_in_the_middle(command, monkeypatch, folder):
     monkeypatch.setattr(html, "render", crash)
     with pytest.raises(RuntimeError, match="a bug"):
         command(*MAIN, "--output", folder)
-    assert [p.name for p in folder.iterdir()] == ["report.html"]
+    assert sorted(p.name for p in folder.iterdir()) == ["interrupted", "report.html"]
     assert (folder / "report.html").read_text("utf-8") == OLD
+    assert [test["status"] for test in reports(folder / "interrupted").json["tests"]] == ["pass"]
 
 
 def test_disk_that_is_full(command, monkeypatch, folder):
