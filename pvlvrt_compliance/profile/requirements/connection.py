@@ -15,7 +15,7 @@ class RideThrough(Requirement):
     """Stay connected where envelopes and regions demand it, let go where a region says so.
 
     Without envelope and regions the profile never lets the inverter go: it must stay connected throughout. With
-    ``recovery_fraction`` the active power must also come back (a demand by depth is `ActivePowerRecovery`).
+    ``recovery_fraction`` the active power must also come back (by depth: active_power_recovery).
     """
 
     envelope: Envelope | None = None
