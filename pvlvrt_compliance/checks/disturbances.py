@@ -15,8 +15,10 @@ from pvlvrt_compliance.waveforms.container import Samples
 SETTLED_CYCLES = 1.1
 """A one-cycle voltage shows a step within a cycle, and a sample or two."""
 
+NORMAL_PU = (0.9, 1.1)
+"""Voltages of normal operation in every code at hand, or nearly."""
+
 _SAME_PU = 1e-9
-_NORMAL_PU = (0.9, 1.1)
 
 
 def voltage_steps_s(scenario: Scenario) -> tuple[float, ...]:
@@ -41,7 +43,7 @@ def last_return_s(scenario: Scenario) -> float:
 def is_voltage_normal(scenario: Scenario, t_s: float) -> bool:
     """Whether the voltage asked for is that of normal operation and balanced: what trips then has another cause."""
     asked = asked_sequences_pu(scenario, t_s)
-    return _NORMAL_PU[0] <= abs(asked.positive) <= _NORMAL_PU[1] and abs(asked.negative) <= 1 - _NORMAL_PU[0]
+    return NORMAL_PU[0] <= abs(asked.positive) <= NORMAL_PU[1] and abs(asked.negative) <= 1 - NORMAL_PU[0]
 
 
 def between_steps_s(evidence: Evidence, at_s: float) -> tuple[float, float]:
