@@ -28,11 +28,15 @@ def voltage_steps_s(scenario: Scenario) -> tuple[float, ...]:
 
 def angle_steps_s(scenario: Scenario) -> tuple[float, ...]:
     """Instants at which an angle of the voltage asked for is meant to jump (s, from the start of the record)."""
-    jumps = [event.t_s for event in scenario.events if isinstance(event, PhaseJump) and event.angle_deg]
-    sags = [(0.0, scenario.duration_s, scenario.sag)]
-    sags += [(event.t_s, event.duration_s, event.sag) for event in scenario.events if isinstance(event, FurtherSag)]
-    jumps += [t for begin_s, lasts_s, sag in sags if sag.angle_deg for t in (begin_s, begin_s + lasts_s)]
-    return tuple(sorted({scenario.start_s + t for t in jumps}))
+    start_s = scenario.start_s
+    jumps = [start_s + event.t_s for event in scenario.events if isinstance(event, PhaseJump) and event.angle_deg]
+    sags = [(start_s, scenario.clear_s, scenario.sag)]
+    for event in scenario.events:
+        if isinstance(event, FurtherSag):
+            begin_s = start_s + event.t_s  # added up as the timeline does, to the last bit
+            sags.append((begin_s, begin_s + event.duration_s, event.sag))
+    jumps += [t for begin_s, end_s, sag in sags if sag.angle_deg for t in (begin_s, end_s)]
+    return tuple(sorted(set(jumps)))
 
 
 def last_return_s(scenario: Scenario) -> float:

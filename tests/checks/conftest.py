@@ -63,11 +63,12 @@ class Bench:
     without: tuple[str, ...] = ()
     spoiled: dict[str, float] = field(default_factory=dict)
     nominal: Nominal = field(default_factory=Nominal)
+    dt_s: float = DT_S
 
     def waveforms(self) -> Waveforms:
         """Sample the record at the control step."""
         scenario = self.test.scenario
-        t = DT_S * np.arange(int(scenario.end_s / DT_S))
+        t = self.dt_s * np.arange(int(scenario.end_s / self.dt_s))
         in_sag = (t >= scenario.start_s) & (t < scenario.clear_s)
         asked, turning = self._asked(t)
         u0, u = (
@@ -90,7 +91,7 @@ class Bench:
         channels["connected"] = (t < opened_s).astype(float)
         for name, at_s in self.spoiled.items():
             channels[name][np.searchsorted(t, at_s)] = np.nan
-        return Waveforms((Segment(0.0, DT_S, {n: x for n, x in channels.items() if n not in self.without}),))
+        return Waveforms((Segment(0.0, self.dt_s, {n: x for n, x in channels.items() if n not in self.without}),))
 
     def result(self) -> TestResult:
         """Judge the record."""
