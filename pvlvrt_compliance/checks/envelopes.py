@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pvlvrt_compliance.checks.disturbances import settled_pu, voltage_steps_s
+from pvlvrt_compliance.checks.disturbances import SETTLED_CYCLES, after_each_step, settled_pu, voltage_steps_s
 from pvlvrt_compliance.checks.evidence import Evidence, require_finite
 from pvlvrt_compliance.checks.series import Mask
 from pvlvrt_compliance.checks.voltage_quantities import NAMES, voltage_quantity_pu
@@ -88,6 +88,7 @@ def _limit(envelope: Envelope, side: Side, by: str, tolerance_pu: float, evidenc
     voltage_pu = voltage_quantity_pu(evidence, envelope.voltage_quantity)
     require_finite(voltage_pu[after_start], NAMES[envelope.voltage_quantity], evidence.t_s[after_start])
     starts_s = _starts_s(envelope, side, tolerance_pu, voltage_pu, evidence)
+    unsettled = after_each_step(evidence, SETTLED_CYCLES, voltage_steps_s(evidence.scenario))
 
     def demand(since_s: float, stay_s: float) -> Demand:
         return Demand(since_s, stay_s, by, envelope.clause, envelope)
@@ -102,7 +103,8 @@ def _limit(envelope: Envelope, side: Side, by: str, tolerance_pu: float, evidenc
         t_s = evidence.t_s[here] - begin_s
         beyond_pu = (envelope.voltage_at(t_s) - voltage_pu[here]) * (1 if side is Side.LOW else -1)
         on_it_pu = np.where(_holds(envelope, t_s), tolerance_pu, min(tolerance_pu, _ROUNDING_PU))
-        left_s = _first_excursion_s(t_s, beyond_pu, tolerance_pu, on_it_pu)
+        deep = (beyond_pu > tolerance_pu) & ~unsettled[here]
+        left_s = _first_excursion_s(t_s, beyond_pu, deep, on_it_pu)
         if left_s is not None:
             return Limit(demand(begin_s, left_s), demand_at)
     return Limit(None, demand_at)
@@ -130,15 +132,15 @@ def _holds(envelope: Envelope, t_s: Samples) -> Mask:
     return holds
 
 
-def _first_excursion_s(t_s: Samples, beyond_pu: Samples, tolerance_pu: float, on_it_pu: Samples) -> float | None:
+def _first_excursion_s(t_s: Samples, beyond_pu: Samples, deep: Mask, on_it_pu: Samples) -> float | None:
     """When the voltage first leaves the envelope (s, as ``t_s``), None when it never does.
 
-    An excursion counts when it goes deeper than the tolerance, so that a sag that is cleared exactly on the envelope
-    is within it; it then counts from its beginning: where a line is crossed, or where a level that holds is left by
-    more than the tolerance (``on_it_pu``).
+    An excursion counts when it goes deeper than the tolerance (``deep``), so that a sag that is cleared exactly on the
+    envelope is within it, and not while a one-cycle voltage swings to where a step leads. It then counts from its
+    beginning: where a line is crossed, or where a level that holds is left by more than the tolerance (``on_it_pu``).
     """
-    deep = np.flatnonzero(beyond_pu > tolerance_pu)
-    if not len(deep):
+    if not deep.any():
         return None
-    on_or_within = np.flatnonzero(beyond_pu[: deep[0]] <= on_it_pu[: deep[0]])
+    first = int(deep.argmax())
+    on_or_within = np.flatnonzero(beyond_pu[:first] <= on_it_pu[:first])
     return float(t_s[on_or_within[-1] + 1 if len(on_or_within) else 0])

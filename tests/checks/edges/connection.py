@@ -34,9 +34,6 @@ from pvlvrt_compliance.scenario.sag import Sag
 U_PU = 1e-3
 """Distance in voltage."""
 
-TWO_PHASE_U_PU = 0.01
-"""The same of a two-phase sag, whose lowest phase a one-cycle voltage shows lower for a part of the first cycle."""
-
 JUMP_S = 0.1
 
 LONG_S = 100.0
@@ -123,7 +120,7 @@ def _envelope(name: str, envelope: Envelope, side: Side, tolerance: float) -> It
     for at_s, level in _sharp_levels(envelope):
         edge = level - sign * tolerance
         if edge > (0.5 if name == "envelope_two_phase" else U_PU):
-            by = sign * (TWO_PHASE_U_PU if name == "envelope_two_phase" else U_PU)
+            by = sign * U_PU
             beyond, within = _trip(name, edge - by, at_s, LET_OFF), _trip(name, edge + by, at_s, FAIL)
             yield Edge(f"{name}: level {level:g} pu", (name, "envelope_tolerance_pu"), beyond, within)
 
