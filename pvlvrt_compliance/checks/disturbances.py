@@ -15,8 +15,10 @@ from pvlvrt_compliance.waveforms.container import Samples
 SETTLED_CYCLES = 1.1
 """A one-cycle voltage shows a step within a cycle, and a sample or two."""
 
+NORMAL_PU = (0.9, 1.1)
+"""Voltages of normal operation in every code at hand, or nearly."""
+
 _SAME_PU = 1e-9
-_NORMAL_PU = (0.9, 1.1)
 
 
 def voltage_steps_s(scenario: Scenario) -> tuple[float, ...]:
@@ -26,11 +28,15 @@ def voltage_steps_s(scenario: Scenario) -> tuple[float, ...]:
 
 def angle_steps_s(scenario: Scenario) -> tuple[float, ...]:
     """Instants at which an angle of the voltage asked for is meant to jump (s, from the start of the record)."""
-    jumps = [event.t_s for event in scenario.events if isinstance(event, PhaseJump) and event.angle_deg]
-    sags = [(0.0, scenario.duration_s, scenario.sag)]
-    sags += [(event.t_s, event.duration_s, event.sag) for event in scenario.events if isinstance(event, FurtherSag)]
-    jumps += [t for begin_s, lasts_s, sag in sags if sag.angle_deg for t in (begin_s, begin_s + lasts_s)]
-    return tuple(sorted({scenario.start_s + t for t in jumps}))
+    start_s = scenario.start_s
+    jumps = [start_s + event.t_s for event in scenario.events if isinstance(event, PhaseJump) and event.angle_deg]
+    sags = [(start_s, scenario.clear_s, scenario.sag)]
+    for event in scenario.events:
+        if isinstance(event, FurtherSag):
+            begin_s = start_s + event.t_s  # added up as the timeline does, to the last bit
+            sags.append((begin_s, begin_s + event.duration_s, event.sag))
+    jumps += [t for begin_s, end_s, sag in sags if sag.angle_deg for t in (begin_s, end_s)]
+    return tuple(sorted(set(jumps)))
 
 
 def last_return_s(scenario: Scenario) -> float:
@@ -41,7 +47,7 @@ def last_return_s(scenario: Scenario) -> float:
 def is_voltage_normal(scenario: Scenario, t_s: float) -> bool:
     """Whether the voltage asked for is that of normal operation and balanced: what trips then has another cause."""
     asked = asked_sequences_pu(scenario, t_s)
-    return _NORMAL_PU[0] <= abs(asked.positive) <= _NORMAL_PU[1] and abs(asked.negative) <= 1 - _NORMAL_PU[0]
+    return NORMAL_PU[0] <= abs(asked.positive) <= NORMAL_PU[1] and abs(asked.negative) <= 1 - NORMAL_PU[0]
 
 
 def between_steps_s(evidence: Evidence, at_s: float) -> tuple[float, float]:

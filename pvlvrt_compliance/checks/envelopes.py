@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pvlvrt_compliance.checks.disturbances import settled_pu, voltage_steps_s
+from pvlvrt_compliance.checks.disturbances import SETTLED_CYCLES, after_each_step, settled_pu, voltage_steps_s
 from pvlvrt_compliance.checks.evidence import Evidence, require_finite
+from pvlvrt_compliance.checks.series import Mask
 from pvlvrt_compliance.checks.voltage_quantities import NAMES, voltage_quantity_pu
 from pvlvrt_compliance.measure.durations import median_over_time
 from pvlvrt_compliance.profile.curves import Envelope, Side
@@ -15,6 +16,9 @@ from pvlvrt_compliance.profile.requirements import RideThrough
 from pvlvrt_compliance.scenario.timeline import asked_sequences_pu
 from pvlvrt_compliance.space_vectors import fortescue
 from pvlvrt_compliance.waveforms.container import Samples
+
+_ROUNDING_PU = 1e-6
+_AN_INSTANT_S = 1e-6
 
 
 class Demand(NamedTuple):
@@ -84,6 +88,7 @@ def _limit(envelope: Envelope, side: Side, by: str, tolerance_pu: float, evidenc
     voltage_pu = voltage_quantity_pu(evidence, envelope.voltage_quantity)
     require_finite(voltage_pu[after_start], NAMES[envelope.voltage_quantity], evidence.t_s[after_start])
     starts_s = _starts_s(envelope, side, tolerance_pu, voltage_pu, evidence)
+    unsettled = after_each_step(evidence, SETTLED_CYCLES, voltage_steps_s(evidence.scenario))
 
     def demand(since_s: float, stay_s: float) -> Demand:
         return Demand(since_s, stay_s, by, envelope.clause, envelope)
@@ -97,7 +102,9 @@ def _limit(envelope: Envelope, side: Side, by: str, tolerance_pu: float, evidenc
         here = evidence.between(begin_s, end_s)
         t_s = evidence.t_s[here] - begin_s
         beyond_pu = (envelope.voltage_at(t_s) - voltage_pu[here]) * (1 if side is Side.LOW else -1)
-        left_s = _first_excursion_s(t_s, beyond_pu, tolerance_pu)
+        on_it_pu = np.where(_holds(envelope, t_s), tolerance_pu, min(tolerance_pu, _ROUNDING_PU))
+        deep = (beyond_pu > tolerance_pu) & ~unsettled[here]
+        left_s = _first_excursion_s(t_s, beyond_pu, deep, on_it_pu)
         if left_s is not None:
             return Limit(demand(begin_s, left_s), demand_at)
     return Limit(None, demand_at)
@@ -117,14 +124,23 @@ def _starts_s(
     return starts_s
 
 
-def _first_excursion_s(t_s: Samples, beyond_pu: Samples, tolerance_pu: float) -> float | None:
+def _holds(envelope: Envelope, t_s: Samples) -> Mask:
+    """Where a level of the envelope holds, rather than rising or falling along a line, shape of ``t_s`` (s)."""
+    if envelope.interpolation == "step":
+        return np.ones(len(t_s), dtype=np.bool_)
+    holds: Mask = envelope.voltage_at(t_s) == envelope.voltage_at(t_s + _AN_INSTANT_S)
+    return holds
+
+
+def _first_excursion_s(t_s: Samples, beyond_pu: Samples, deep: Mask, on_it_pu: Samples) -> float | None:
     """When the voltage first leaves the envelope (s, as ``t_s``), None when it never does.
 
-    An excursion counts when it goes deeper than the tolerance, so that a sag that is cleared exactly on the envelope
-    is within it; it then counts from its beginning.
+    An excursion counts when it goes deeper than the tolerance (``deep``), so that a sag that is cleared exactly on the
+    envelope is within it, and not while a one-cycle voltage swings to where a step leads. It then counts from its
+    beginning: where a line is crossed, or where a level that holds is left by more than the tolerance (``on_it_pu``).
     """
-    deep = np.flatnonzero(beyond_pu > tolerance_pu)
-    if not len(deep):
+    if not deep.any():
         return None
-    on_or_within = np.flatnonzero(beyond_pu[: deep[0]] <= 0)
+    first = int(deep.argmax())
+    on_or_within = np.flatnonzero(beyond_pu[:first] <= on_it_pu[:first])
     return float(t_s[on_or_within[-1] + 1 if len(on_or_within) else 0])

@@ -53,17 +53,16 @@ def excursions(
 
 
 def time_spent_s(found: list[Excursion], t_s: Samples, window_s: float | None) -> Samples:
-    """Time in the excursions up to each instant (s): all within the sliding window, or of the present one alone.
+    """Time in the excursions up to each instant (s): of the present one, or of all within the sliding window if more.
 
-    Zero outside of excursions; shape of ``t_s``.
+    Zero outside of excursions; shape of ``t_s``. An excursion longer than the window counts in full.
     """
-    inside, total = inside_of(found, t_s), np.zeros(len(t_s))
+    inside, present, total = inside_of(found, t_s), np.zeros(len(t_s)), np.zeros(len(t_s))
     for begin_s, end_s in found:
-        if window_s is None:
-            total = np.where(t_s >= begin_s, t_s - begin_s, total)
-        else:
+        present = np.where(t_s >= begin_s, t_s - begin_s, present)
+        if window_s is not None:
             total += _overlap(t_s, begin_s, end_s, window_s)
-    return np.where(inside, total, 0.0)
+    return np.where(inside, np.maximum(present, total), 0.0)
 
 
 def inside_of(found: list[Excursion], t_s: Samples) -> Mask:

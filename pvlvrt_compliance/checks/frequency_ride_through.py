@@ -7,7 +7,13 @@ import numpy as np
 from pvlvrt_compliance.checks.disturbances import is_voltage_normal
 from pvlvrt_compliance.checks.evidence import Evidence, NotApplicable
 from pvlvrt_compliance.checks.excursions import excursions, inside_of, time_spent_s
-from pvlvrt_compliance.checks.frequency_series import ACCURACY_HZ, frequency_hz, largest_deviation
+from pvlvrt_compliance.checks.frequency_series import (
+    ACCURACY_HZ,
+    frequency_hz,
+    held_in_words,
+    known_frequency_hz,
+    largest_deviation,
+)
 from pvlvrt_compliance.checks.results import Check, Status
 from pvlvrt_compliance.checks.verdicts import judged
 from pvlvrt_compliance.measure.frequency import rocof_hz_s
@@ -55,8 +61,10 @@ def check_frequency_ride_through(requirement: FrequencyRideThrough, evidence: Ev
     """
     worst_hz, worst_at_s = largest_deviation(evidence)
     frequency = frequency_hz(evidence)
-    rate = _rate(requirement, evidence, frequency)
-    seen = f"furthest {worst_hz:.2f} Hz at {worst_at_s:.3f} s{_rate_in_words(requirement, rate)}"
+    rate = _rate(requirement, evidence)
+    seen = (
+        f"furthest {worst_hz:.2f} Hz at {worst_at_s:.3f} s{_rate_in_words(requirement, rate)}{held_in_words(evidence)}"
+    )
     demands = [*_band_releases(requirement, evidence, frequency), *_rate_releases(requirement, evidence, rate)]
     release = min(demands, key=lambda demand: demand.until_s, default=None)
     stop = _stop(evidence)
@@ -146,10 +154,11 @@ def _beyond(
     return _Demand(float(evidence.t_s[free[0]]) - ride_s, ride_s, by, requirement.bands)
 
 
-def _rate(requirement: FrequencyRideThrough, evidence: Evidence, frequency: Samples) -> Samples | None:
+def _rate(requirement: FrequencyRideThrough, evidence: Evidence) -> Samples | None:
+    """Rate of change between two frequencies that are known: after one that is held, the first known one is no step."""
     if requirement.rocof_window_s is None:
         return None
-    return np.abs(rocof_hz_s(evidence.t_s, frequency, requirement.rocof_window_s.value))
+    return np.abs(rocof_hz_s(evidence.t_s, known_frequency_hz(evidence), requirement.rocof_window_s.value))
 
 
 def _rate_releases(requirement: FrequencyRideThrough, evidence: Evidence, rate: Samples | None) -> list[_Demand]:

@@ -82,7 +82,8 @@ def jump_at(evidence: Evidence, at_s: float) -> Jump:
     others = [t for t in angle_steps_s(evidence.scenario) if t != at_s]
     alone = all(abs(t - at_s) > 2 * cycle_s for t in others)
     if alone and at_s - before_s > 2 * cycle_s and after_s - at_s > cycle_s:
-        first, last, then = (_at(phasors, evidence, t) for t in (at_s - cycle_s, at_s - 1e-4, at_s + cycle_s))
+        before = evidence.t_s[max(int(np.searchsorted(evidence.t_s, at_s - 1e-9)) - 1, 0)]  # the last sample
+        first, last, then = (_at(phasors, evidence, t) for t in (before - cycle_s, before, before + 2 * cycle_s))
         drift = np.angle(_positive(last) * np.conj(_positive(first)))
         jump = _jump(at_s, last, then * np.exp(-1j * drift), "measured")
         if math.isfinite(jump.positive_deg) and math.isfinite(jump.phase_deg):

@@ -32,10 +32,12 @@ def recovered_after_s(evidence: Evidence, from_s: float, target_kw: float) -> fl
     Raises
     ------
     MeasurementError
-        When P is not finite somewhere from the instant on.
+        When the record ends before the instant, or P is not finite somewhere from it on.
     """
     after = evidence.between(from_s, evidence.waveforms.end_s)
     t_s = evidence.t_s[after]
+    if not len(t_s):
+        raise MeasurementError(f"the record ends at {evidence.waveforms.end_s:.3f} s, before {from_s:.3f} s")
     active_power = require_finite(evidence.active_power_kw[after], "P", t_s)
     too_low = np.flatnonzero(active_power < target_kw)
     if not len(too_low):

@@ -126,7 +126,8 @@ def _judge_long_sag(requirement: RideThrough, evidence: Evidence, release: Deman
         f"connected throughout; of this sag of {evidence.scenario.duration_s:.3f} s {release.by} demands "
         f"{release.stay_s:.3f} s, so it does not demand recovery"
     )
-    return _on_time(requirement, Status.PASS, message, release, stopped_at_s=last_return_s(evidence.scenario))
+    last_s = min(last_return_s(evidence.scenario), evidence.waveforms.end_s)
+    return _on_time(requirement, Status.PASS, message, release, stopped_at_s=last_s)
 
 
 def _throughout(requirement: RideThrough, evidence: Evidence) -> Check:

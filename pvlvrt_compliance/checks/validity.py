@@ -1,7 +1,11 @@
 """When a test counts at all: it began as it was meant to, and the sag was the one asked for."""
 
+from pvlvrt_compliance.checks.disturbances import voltage_steps_s
 from pvlvrt_compliance.checks.evidence import Evidence
 from pvlvrt_compliance.profile.procedure import Conditions
+
+_LAST_STEP_S = 0.01
+"""A record ends up to a sampling step before the end that was asked for."""
 
 
 def reason_not_to_count(conditions: Conditions, evidence: Evidence) -> str | None:
@@ -21,10 +25,11 @@ def reason_not_to_count(conditions: Conditions, evidence: Evidence) -> str | Non
 
 
 def _record_too_short(evidence: Evidence) -> str | None:
-    clear_s, end_s = evidence.scenario.clear_s, evidence.waveforms.end_s
-    if end_s > clear_s:
-        return None
-    return f"the record ends at {end_s:.3f} s, before the sag is cleared at {clear_s:.3f} s"
+    scenario, end_s = evidence.scenario, evidence.waveforms.end_s
+    if end_s <= scenario.clear_s:
+        return f"the record ends at {end_s:.3f} s, before the sag is cleared at {scenario.clear_s:.3f} s"
+    missed = [t for t in voltage_steps_s(scenario) if end_s < t < scenario.end_s - _LAST_STEP_S]
+    return f"the record ends at {end_s:.3f} s, before the voltage's step at {missed[0]:.3f} s" if missed else None
 
 
 def _wrong_start(conditions: Conditions, evidence: Evidence) -> str | None:

@@ -34,7 +34,8 @@ class Bench:
     sag, ``recovers_after_s`` and the arguments of ``p_after_kw`` and ``q_after_kvar`` from clearing. ``p_kw`` and
     ``q_kvar`` take the place of all other powers, ``flows`` is a factor on the current. ``negative_reactive_pu`` is
     added during the sag, positive where it lowers V-. ``healthy_pu`` scales the voltage outside of the sag. Events of
-    the scenario move the voltages as they say.
+    the scenario move the voltages as they say; ``terminals_turn_rad`` is how far those at the terminals, with the
+    currents, are ahead of the source's (rad).
     """
 
     profile: Profile
@@ -58,14 +59,16 @@ class Bench:
     p_kw: Callable[[np.ndarray], np.ndarray] | None = None
     q_kvar: Callable[[np.ndarray], np.ndarray] | None = None
     flows: Callable[[np.ndarray], np.ndarray] | None = None
+    terminals_turn_rad: Callable[[np.ndarray], np.ndarray] | None = None
     without: tuple[str, ...] = ()
     spoiled: dict[str, float] = field(default_factory=dict)
     nominal: Nominal = field(default_factory=Nominal)
+    dt_s: float = DT_S
 
     def waveforms(self) -> Waveforms:
         """Sample the record at the control step."""
         scenario = self.test.scenario
-        t = DT_S * np.arange(int(scenario.end_s / DT_S))
+        t = self.dt_s * np.arange(int(scenario.end_s / self.dt_s))
         in_sag = (t >= scenario.start_s) & (t < scenario.clear_s)
         asked, turning = self._asked(t)
         u0, u = (
@@ -73,8 +76,10 @@ class Bench:
         )
         u = [np.where(in_sag, 1.0, self.healthy_pu) * x for x in u]
         i = self._current(t, u, in_sag)
-        channels = {f"u_{p}_v": (x * turning).real for p, x in zip("abc", u, strict=True)}
-        channels |= {f"u0_{p}_v": (x * turning).real for p, x in zip("abc", u0, strict=True)}
+        channels = {f"u0_{p}_v": (x * turning).real for p, x in zip("abc", u0, strict=True)}
+        if self.terminals_turn_rad is not None:
+            turning = turning * np.exp(1j * self.terminals_turn_rad(t - scenario.start_s))
+        channels |= {f"u_{p}_v": (x * turning).real for p, x in zip("abc", u, strict=True)}
         feeding = self._feeding(t)
         channels |= {f"i_{p}_a": (x * turning).real * feeding for p, x in zip("abc", i, strict=True)}
         if self.extra_current_pu is not None:
@@ -86,7 +91,7 @@ class Bench:
         channels["connected"] = (t < opened_s).astype(float)
         for name, at_s in self.spoiled.items():
             channels[name][np.searchsorted(t, at_s)] = np.nan
-        return Waveforms((Segment(0.0, DT_S, {n: x for n, x in channels.items() if n not in self.without}),))
+        return Waveforms((Segment(0.0, self.dt_s, {n: x for n, x in channels.items() if n not in self.without}),))
 
     def result(self) -> TestResult:
         """Judge the record."""

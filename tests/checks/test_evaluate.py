@@ -120,6 +120,16 @@ def test_samples_that_are_no_numbers(bench, channel, at_s):
     assert check.status is (Status.PASS if (channel, at_s) in harmless else Status.NOT_EVALUATED)
 
 
+def test_record_that_ends_before_a_later_sag(bench):
+    """A record that ends before the last step of the voltage is not evaluated: what it lacks could have failed."""
+    again = {"kind": "sag", "t_s": 0.8, "duration_s": 0.1, "sag": Sag(depth=0.5)}
+    made = bench(q_sag_kvar=250, scenario={"events": [again]})
+    segment = made.waveforms().segments[0].slice(0.0, 1.0)
+    result = evaluate(made.profile, made.test, Waveforms((segment,)), made.nominal, made.available_power_w)
+    assert {check.status for check in result.checks} == {Status.NOT_EVALUATED}
+    assert "before the voltage's step at 1.100 s" in result.checks[0].message
+
+
 def test_record_that_ends_in_the_sag(bench):
     """A record that ends before clearing is not evaluated."""
     made = bench(q_sag_kvar=250)

@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
+from pvlvrt_compliance.checks.alone import judge_alone
+from pvlvrt_compliance.checks.evaluate import collect
+from pvlvrt_compliance.checks.evidence import NotApplicable
+from pvlvrt_compliance.checks.frequency_ride_through import check_frequency_ride_through
+from pvlvrt_compliance.checks.frequency_series import frequency_hz
 from pvlvrt_compliance.checks.results import Status
+from pvlvrt_compliance.scenario.sag import Sag
 
 BANDS = [{"frequency_hz": (47.0, 49.0), "ride_s": 0.6}, {"frequency_hz": (49.0, 51.0)},
          {"frequency_hz": (51.0, 52.0), "ride_s": 0.4}]  # fmt: skip
@@ -85,6 +91,60 @@ def test_a_jump_of_the_angle_is_no_frequency(frequency):
     check = frequency(jump, ramp(50.9, t_s=0.2), disconnected_after_s=1.2).check(KIND)
     assert check.status is Status.FAIL
     assert "furthest 50.90 Hz" in check.message
+
+
+SOURCE = ("u0_a_v", "u0_b_v", "u0_c_v")
+
+
+def swing(lasts_s, size_rad=0.5, rate_hz=4.0):
+    """An angle that swings while a sag lasts, and dies away within five cycles: up to 2 Hz at either side."""
+    fading = lambda t: np.where(t < lasts_s, 1.0, np.exp(-(t - lasts_s) / 0.008))  # noqa: E731
+    return lambda t: size_rad * (t > 0) * fading(t) * np.sin(2 * np.pi * rate_hz * t)
+
+
+@pytest.mark.parametrize("phases", ["abc", "bc", "a"])
+def test_swinging_terminals_are_no_frequency(profile_with, bench, phases):
+    """Behind an impedance the current turns the terminals in a sag; the grid stays at 50 Hz, source recorded or not."""
+    bands = {"rows": BANDS, "clause": "7.1", "confidence": "code", "source": "a test"}
+    profile = profile_with(KIND, {"clause": "7", "source": "a test", "bands": bands})
+    for missing in ((), SOURCE):
+        made = bench(asked=Sag(depth=0.8, phases=phases), duration_s=0.6, profile=profile, p_sag_kw=100,
+                     terminals_turn_rad=swing(0.6), without=missing)  # fmt: skip
+        evidence = collect(profile, made.test, made.waveforms(), made.nominal, made.available_power_w)
+        assert np.nanmax(np.abs(frequency_hz(evidence) - 50)) < 0.01
+        with pytest.raises(NotApplicable, match="stays within"):
+            check_frequency_ride_through(profile.requirements.frequency_ride_through, evidence)
+    assert np.nanmax(np.abs(evidence.tracked_frequency_hz - 50)) > 1.5  # what the terminals read
+
+
+def test_terminals_show_the_frequency_of_a_normal_voltage(frequency):
+    """Without the source the frequency after a sag is that of the terminals, and the message says how it was found."""
+    sag = {"kind": "sag", "t_s": 0.0, "duration_s": 0.2, "sag": {"depth": 0.5}}
+    made = frequency(sag, ramp(50.9, t_s=0.4), duration_s=1.6, without=SOURCE, disconnected_after_s=1.4)
+    demand = made.profile.requirements.frequency_ride_through
+    check = judge_alone(KIND, demand, made.waveforms(), made.test.scenario)
+    assert check.status is Status.FAIL
+    assert "furthest 50.90 Hz" in check.message
+    assert "held while their voltage was not normal" in check.message
+
+
+def test_source_with_hardly_any_voltage_has_no_frequency(profile_with, bench):
+    """At 0.02 pu a source that turns at 55 Hz for a while is not believed, at 0.2 pu it is."""
+    bands = {"rows": BANDS, "clause": "7.1", "confidence": "code", "source": "a test"}
+    profile = profile_with(KIND, {"clause": "7", "source": "a test", "bands": bands})
+    events = [{"kind": "frequency_step", "t_s": 0.1, "to_hz": 55}, {"kind": "frequency_step", "t_s": 0.4, "to_hz": 50}]
+    for depth, seen_hz in ((0.98, 50.0), (0.8, 55.0)):
+        made = bench(depth=depth, duration_s=0.6, profile=profile, scenario={"events": events})
+        evidence = collect(profile, made.test, made.waveforms(), made.nominal, made.available_power_w)
+        assert np.nanmax(frequency_hz(evidence)) == pytest.approx(seen_hz, abs=0.02)
+
+
+def test_held_frequency_is_no_rate(frequency):
+    """A ramp just inside the limit, held for a while after a dip, is not faster when it shows again."""
+    dip = {"kind": "sag", "t_s": 0.1, "duration_s": 0.02, "sag": {"depth": 0.05}}
+    check = frequency(dip, ramp(50.95, 1.9), duration_s=1.0, disconnected_after_s=0.6).check(KIND)
+    assert check.status is Status.FAIL, check.message
+    assert "fastest 1.90 Hz/s" in check.message
 
 
 def test_blocked_bridge_does_not_ride_through(frequency):

@@ -71,3 +71,12 @@ def test_size_of_a_jump(jumps, seen, hz, bench, profile_with):
     assert jump.seen == seen
     assert jump.positive_deg == pytest.approx(jumps[0][1], abs=0.05)
     assert jump.phase_deg == pytest.approx(jumps[0][1], abs=0.05)
+
+
+@pytest.mark.parametrize("t_s", [0.1, 0.3, 0.5919555802163262, 0.7])
+@pytest.mark.parametrize("lasts_s", [0.012330603413469258, 0.1, 0.2])
+def test_instants_of_jumps_are_those_of_the_timeline(bench, profile_with, t_s, lasts_s):
+    """Both ends of a further sag with an angle are breakpoints, however their sum rounds."""
+    sag = {"kind": "sag", "t_s": t_s, "duration_s": lasts_s, "sag": Sag(depth=0.0, phases="a", angle_deg=30)}
+    made = bench(depth=0, duration_s=1.0, profile=profile_with(KIND, DEMAND), scenario={"events": [sag]}, p_sag_kw=500)
+    assert made.check(KIND).status is Status.PASS

@@ -1,0 +1,177 @@
+"""Every limit of every shipped profile, just inside and just outside, on records made from the profile's numbers."""
+
+import json
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import pytest
+
+from edges import GENERATORS, Edge, Record
+from edges.edge import SHORT_STEP_S, hz
+from pvlvrt_compliance.checks.evaluate import CONNECTION_KINDS, REPEATED_RUNS
+from pvlvrt_compliance.checks.repeated_runs import judge_repeated_runs
+from pvlvrt_compliance.checks.results import Check, Status, TestResult
+from pvlvrt_compliance.profile import Profile, known_profiles, load_profile
+from pvlvrt_compliance.profile.provenance import marks_in
+from pvlvrt_compliance.profile.requirements import Requirement, Requirements
+from pvlvrt_compliance.units import Nominal
+
+ON_DETECTION = {"reactive_current", "negative_sequence_current", "support_dynamics"}
+"""Kinds that depend on the thresholds of detection."""
+
+WITHOUT_A_SIDE = {
+    ("reactive_current", "k_range"): "judges nothing: K that the code lets be set",
+    ("negative_sequence_current", "k_range"): "judges nothing: K that the code lets be set",
+    ("negative_sequence_current", "reference"): "V- is zero before a sag, so that both references are the same",
+}
+"""Numbers that no record can be on either side of, and why."""
+
+WITHOUT_ENVELOPE = {"envelope_tolerance_pu"}
+"""Numbers of ride-through that do nothing in a profile that has neither envelope nor regions."""
+
+
+class Case(NamedTuple):
+    """An edge of a requirement in the first profile that has it."""
+
+    profile: Profile
+    kind: str
+    edge: Edge
+
+
+def demands() -> Iterator[tuple[Profile, str, Requirement]]:
+    """Every requirement of every shipped profile."""
+    for name in known_profiles():
+        profile = load_profile(name)
+        for kind, demand in profile.requirements.by_kind():
+            yield profile, kind, demand
+
+
+def plain(item: Any) -> Any:
+    """Numbers without marks and clauses."""
+    if isinstance(item, dict):
+        return {key: plain(part) for key, part in item.items() if key not in {"confidence", "source", "clause"}}
+    return [plain(part) for part in item] if isinstance(item, (list, tuple)) else item
+
+
+def changed(demand: Requirement, edge: Edge) -> Requirement:
+    """The requirement as the edge wants it."""
+    fields = {
+        name: getattr(demand, name).model_copy(update={"value": new}) if isinstance(new, (int, float)) else new
+        for name, new in edge.only.items()
+    }
+    return demand.model_copy(update=fields)
+
+
+def judging(case: Case) -> Profile:
+    """The profile with this requirement alone, but for what its check looks at besides.
+
+    Whether the sag was the one asked for is another matter: frequencies at the end of the bands leave a V- of 0.03 pu.
+    """
+    demand = changed(getattr(case.profile.requirements, case.kind), case.edge)
+    others = {}
+    if case.kind == "negative_sequence_current" and not case.edge.alone:
+        others["reactive_current"] = case.profile.requirements.reactive_current
+    requirements = Requirements(**(others | {case.kind: demand}))
+    wide = case.profile.conditions.no_load_tolerance_pu.model_copy(update={"value": 0.05})
+    conditions = case.profile.conditions.model_copy(update={"no_load_tolerance_pu": wide})
+    return case.profile.model_copy(update={"requirements": requirements, "conditions": conditions})
+
+
+def key(case: Case) -> str:
+    """The same for edges that are made from the same numbers."""
+    profile = judging(case)
+    detection = profile.detection if case.kind in ON_DETECTION else None
+    windows = profile.windows if case.kind not in CONNECTION_KINDS else None
+    parts = (profile.requirements, windows, detection)
+    numbers = [plain(part.model_dump(mode="json")) if part is not None else None for part in parts]
+    return json.dumps([case.kind, case.edge.label, hz(profile), numbers], sort_keys=True)
+
+
+def cases() -> list[Case]:
+    """Every edge once."""
+    found: dict[str, Case] = {}
+    for profile, kind, demand in demands():
+        if kind in GENERATORS:
+            for edge in GENERATORS[kind](demand, profile):
+                case = Case(profile, kind, edge)
+                found.setdefault(key(case), case)
+    return list(found.values())
+
+
+CASES = cases()
+
+
+@pytest.fixture
+def judge(bench: Callable[..., Any]) -> Callable[[Case, Record], Any]:
+    """Judge a record of an edge."""
+
+    def verdict(case: Case, made: Record) -> Any:
+        settings = {"dt_s": SHORT_STEP_S, "nominal": Nominal(frequency_hz=hz(case.profile))} | made.settings
+        profile = judging(case)
+        return bench(
+            asked=made.asked, duration_s=made.duration_s, profile=profile, scenario=made.scenario, **settings
+        ).check(case.kind)
+
+    return verdict
+
+
+def records() -> Iterator[Any]:
+    """Every record of every edge."""
+    for case in CASES:
+        for side in ("inside", "outside", "further"):
+            if (made := getattr(case.edge, side)) is not None:
+                yield pytest.param(case, made, id=f"{case.profile.id}-{case.kind}-{case.edge.label}-{side}")
+
+
+@pytest.mark.parametrize(("case", "made"), list(records()))
+def test_edge(judge, case, made):
+    """Just inside of a limit a record passes, or is let off; just outside it is not."""
+    check = judge(case, made)
+    assert check.status in made.statuses, f"{check.status}: {check.message}"
+
+
+def test_every_number_has_an_edge():
+    """Each marked number of each requirement decides an edge, or stands in the list of those that cannot."""
+    missing = []
+    for profile, kind, demand in demands():
+        if kind == REPEATED_RUNS:
+            continue
+        exercised = {name for edge in GENERATORS[kind](demand, profile) for name in edge.numbers}
+        named = {name for name, _ in marks_in(demand)}
+        idle = {name for name in named if (kind, name) in WITHOUT_A_SIDE}
+        if kind == "ride_through" and not named & {"envelope", "regions"}:
+            idle |= WITHOUT_ENVELOPE
+        assert exercised <= named
+        assert not exercised & idle
+        missing += [f"{profile.id}: {kind}.{name}" for name in sorted(named - exercised - idle)]
+    assert not missing
+    assert {kind for _, kind, _ in demands()} == {*GENERATORS, REPEATED_RUNS}
+
+
+def test_what_cannot_have_an_edge_exists():
+    """The list of numbers without a side names none that no profile has."""
+    for kind, name in WITHOUT_A_SIDE:
+        assert any(name in dict(marks_in(demand)) for _, found, demand in demands() if found == kind)
+
+
+def run(number: int, status: Status) -> TestResult:
+    """A run of a row, with a verdict on its connection."""
+    return TestResult(id=f"run-{number}", status=status, checks=(Check(check="ride_through", status=status),))
+
+
+RULES = {(profile.id, demand) for profile, kind, demand in demands() if kind == REPEATED_RUNS}
+
+
+@pytest.mark.parametrize("demand", [pytest.param(demand, id=name) for name, demand in sorted(RULES, key=str)])
+def test_edges_of_repeated_runs(demand):
+    """As many runs as the rule wants pass, one less fails; with a second chance, so do the further runs."""
+    wanted = int(demand.consecutive.value)
+    good = [run(k, Status.PASS) for k in range(wanted)]
+    bad = [*good[:-1], run(wanted, Status.FAIL)]
+    assert judge_repeated_runs(demand, good).status is Status.PASS
+    assert judge_repeated_runs(demand, good[:-1]).status is Status.NOT_APPLICABLE
+    assert judge_repeated_runs(demand, bad).status is Status.FAIL
+    if demand.consecutive_after_trip is not None:
+        further = [run(10 + k, Status.PASS) for k in range(int(demand.consecutive_after_trip.value))]
+        assert judge_repeated_runs(demand, bad, further).status is Status.PASS
+        assert judge_repeated_runs(demand, bad, further[:-1]).status is Status.FAIL
