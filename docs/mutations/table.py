@@ -7,14 +7,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from mutants import MUTANTS, RIGHT, UNNOTICED, Mutant
-from wrong_controllers import Wrong, wrong_run
-
 from pvlvrt_compliance.checks.results import Check, Status
 from pvlvrt_compliance.profile import Profile, load_profile
 from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.study.rows import run_rows
 from pvlvrt_compliance.study.run import run_test
+from wrong_controllers import Wrong, wrong_run
 
 PROFILE = Path(__file__).with_name("mutation-table.toml")
 ROWS = (RIGHT, *MUTANTS)
@@ -62,6 +61,7 @@ def verdicts_on(mutant: Mutant) -> Verdicts:
 
 def verdicts_on_all() -> dict[str, Verdicts]:
     """The verdicts by the name of the mutant, two of them at a time."""
+    wrong_run(Wrong.NOTHING)  # one loop is built, before two threads ask for it
     with ThreadPoolExecutor(2) as pool:
         return dict(zip((row.name for row in ROWS), pool.map(verdicts_on, ROWS), strict=True))
 
@@ -82,12 +82,13 @@ def how(mutant: Mutant) -> str:
 
 _HEAD = """# Mutations
 
-Do the checks tell a wrong controller from the right one? Below, {count} controllers and plants with one mistake each go
-through every test of [`mutation-table.toml`](mutations/mutation-table.toml), a profile that has every kind of requirement
-and that the paper's control meets (first row). **F**: the check failed in at least one test; a dot: it passed wherever it
-had something to judge; empty: it had nothing to judge, or the inverter had stopped. Which checks must fail is stated in
-[`mutants.py`](mutations/mutants.py) with the reason, and `tests/study/test_mutations.py` demands exactly these. The page is
-written by `python docs/mutations/generate.py`; `--check` runs everything anew and compares.
+Do the checks tell a wrong controller from the right one? Below, {count} controllers and plants with one mistake each
+go through every test of [`mutation-table.toml`](mutations/mutation-table.toml), a profile that has every kind of
+requirement and that the paper's control meets (first row). **F**: the check failed in at least one test; a dot: it
+passed wherever it had something to judge; empty: it had nothing to judge, or the inverter had stopped. Which checks
+must fail is stated in [`mutants.py`](mutations/mutants.py) with the reason, and `tests/study/test_mutations.py`
+demands exactly these. The page is written by `python docs/mutations/generate.py`; `--check` runs everything anew and
+compares.
 """
 
 _REASONS = """## Why

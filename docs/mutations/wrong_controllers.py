@@ -6,8 +6,6 @@ from enum import IntEnum
 from functools import cache, partial
 from typing import Any, NamedTuple
 
-from rebuild import Loop, rebuilt_loop
-
 from pvlvrt_compliance.control.controller import ControllerParams, ControllerSignals, ControllerState, Measured
 from pvlvrt_compliance.control.current_references import CurrentReferenceParams, current_references
 from pvlvrt_compliance.control.current_regulator import current_regulator_step
@@ -23,6 +21,7 @@ from pvlvrt_compliance.control.synchronisation import synchronise
 from pvlvrt_compliance.control.synchronised import Synchronisation
 from pvlvrt_compliance.kernel import kernel
 from pvlvrt_compliance.vectors import ahead, dot, length, scaled, turned
+from rebuild import Loop, rebuilt_loop
 
 
 class Wrong(IntEnum):
@@ -223,14 +222,14 @@ def wrong_step(x: WrongState, y: Measured, p: ControllerParams) -> tuple[WrongSt
 
 
 @cache
-def _compiled() -> Loop:
+def _rebuilt() -> Loop:
     return rebuilt_loop(controller_step=wrong_step)
 
 
-def _run(wrong: int, plant: Any, controller: ControllerState, *others: Any) -> Any:
-    return _compiled()(plant, WrongState(right=controller, wrong=wrong, memory=_NOTHING_YET), *others)
+def _run(loop: Loop, wrong: int, plant: Any, controller: ControllerState, *others: Any) -> Any:
+    return loop(plant, WrongState(right=controller, wrong=wrong, memory=_NOTHING_YET), *others)
 
 
 def wrong_run(wrong: Wrong) -> Callable[..., Any]:
     """Loop over time with one mistake in its controller, for `simulate(..., run=run)`."""
-    return partial(_run, int(wrong))
+    return partial(_run, _rebuilt(), int(wrong))

@@ -65,7 +65,9 @@ def _shares(requirement: ReactiveRatio, evidence: Evidence) -> tuple[Samples, Sa
     require_finite(evidence.current_phase_pu[:, inside], "the current", t_s)
     active, reactive = (part[inside] for part in evidence.current_positive_pu)
     total = np.hypot(active, reactive)
-    flowing = demanded & (total >= requirement.least_current_pu.value)  # false where there is no voltage: not a number there
+    flowing = demanded & (
+        total >= requirement.least_current_pu.value
+    )  # false where there is no voltage: not a number there
     if not flowing.any():
         raise NotApplicable(
             f"the positive-sequence current stays below {requirement.least_current_pu.value:g} pu, or there is no "

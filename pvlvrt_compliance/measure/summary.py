@@ -41,10 +41,11 @@ def measure(
     """Measure a record in the windows before, during and after its sag.
 
     The frequency that windows and Fourier components go by is the one measured before the sag; the nominal one where
-    there is no voltage to measure it on. A window whose own frequency is another one is measured at that. A window across a change of the sampling step is measured on the coarsest
-    grid; one that the record does not hold, or whose grids do not fit each other, is left out (`window_on_one_grid`
-    raises with the reason for whoever needs it). Of a window longer than `LONG_WINDOW_S`, frequency and distortion are
-    those of its last `LAST_PART_S`. A quantity whose channels are missing or not finite is None.
+    there is no voltage to measure it on. A window whose own frequency is another one is measured at that. A window
+    across a change of the sampling step is measured on the coarsest grid; one that the record does not hold, or whose
+    grids do not fit each other, is left out (`window_on_one_grid` raises with the reason for whoever needs it). Of a
+    window longer than `LONG_WINDOW_S`, frequency and distortion are those of its last `LAST_PART_S`. A quantity whose
+    channels are missing or not finite is None.
 
     Parameters
     ----------
