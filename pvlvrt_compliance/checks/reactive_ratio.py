@@ -4,6 +4,7 @@ import numpy as np
 
 from pvlvrt_compliance.checks.evidence import Evidence, NotApplicable, require_finite
 from pvlvrt_compliance.checks.results import Check
+from pvlvrt_compliance.checks.series import Mask
 from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
 from pvlvrt_compliance.profile.requirements import ReactiveRatio
 from pvlvrt_compliance.waveforms.container import Samples
@@ -16,12 +17,13 @@ def check_reactive_ratio(requirement: ReactiveRatio, evidence: Evidence) -> Chec
 
     I_total is the whole positive-sequence current, so that the share is the sine of its angle behind V+: the share does
     not depend on how an inverter shares its current between phases. Reactive current that lowers V+ has a negative
-    share. Counts from ``within_s`` after the start to clearing, at the V+ of the same cycle.
+    share. Counts from ``within_s`` after the start to clearing, at the V+ of the same cycle, and only while that is a
+    voltage event by the profile's thresholds: without one nothing is demanded, and nothing forbidden.
 
     Raises
     ------
     NotApplicable
-        When the sag is shorter than that, or the current or the voltage too small to have a share.
+        When the sag is shorter than that, is no event, or the current or the voltage is too small to have a share.
     MeasurementError
         When V+ or the current cannot be measured.
     """
@@ -57,13 +59,28 @@ def _shares(requirement: ReactiveRatio, evidence: Evidence) -> tuple[Samples, Sa
             "the share is demanded"
         )
     v_positive = require_finite(evidence.voltage_positive_pu[inside], "V+", t_s)
+    demanded = _is_event(evidence, v_positive)
+    if not demanded.any():
+        raise NotApplicable("V+ does not pass the threshold of detection: no share is demanded")
     require_finite(evidence.current_phase_pu[:, inside], "the current", t_s)
     active, reactive = (part[inside] for part in evidence.current_positive_pu)
     total = np.hypot(active, reactive)
-    flowing = total >= requirement.least_current_pu.value  # false where there is no voltage: not a number there
+    flowing = demanded & (
+        total >= requirement.least_current_pu.value
+    )  # false where there is no voltage: not a number there
     if not flowing.any():
         raise NotApplicable(
             f"the positive-sequence current stays below {requirement.least_current_pu.value:g} pu, or there is no "
             "voltage to tell reactive current by"
         )
     return t_s[flowing], v_positive[flowing], reactive[flowing] / total[flowing]
+
+
+def _is_event(evidence: Evidence, v_positive: Samples) -> Mask:
+    """Where a V+ (pu) is a sag or a swell by the profile's thresholds; without them, everywhere. Shape of V+."""
+    detection = evidence.detection
+    if detection is None:
+        return np.ones(len(v_positive), dtype=np.bool_)
+    low: Mask = v_positive < detection.enter_below_pu.value
+    swell = detection.enter_above_pu
+    return low if swell is None else low | (v_positive > swell.value)

@@ -26,6 +26,9 @@ VOLTAGE_FLOOR_PU = 5e-3
 LONG_WINDOW_S = 3.0
 """Length from which frequency and distortion are not measured over the whole of a window (s)."""
 
+OTHER_FREQUENCY_HZ = 0.05
+"""Distance from the frequency before the sag beyond which a window is measured at its own."""
+
 LAST_PART_S = 0.2
 """What they are measured in, as long as the intervals of IEC 61000-4-7: ten cycles at 50 Hz, twelve at 60 Hz."""
 
@@ -38,10 +41,11 @@ def measure(
     """Measure a record in the windows before, during and after its sag.
 
     The frequency that windows and Fourier components go by is the one measured before the sag; the nominal one where
-    there is no voltage to measure it on. A window across a change of the sampling step is measured on the coarsest
-    grid; one that the record does not hold, or whose grids do not fit each other, is left out (`window_on_one_grid`
-    raises with the reason for whoever needs it). Of a window longer than `LONG_WINDOW_S`, frequency and distortion are
-    those of its last `LAST_PART_S`. A quantity whose channels are missing or not finite is None.
+    there is no voltage to measure it on. A window whose own frequency is another one is measured at that. A window
+    across a change of the sampling step is measured on the coarsest grid; one that the record does not hold, or whose
+    grids do not fit each other, is left out (`window_on_one_grid` raises with the reason for whoever needs it). Of a
+    window longer than `LONG_WINDOW_S`, frequency and distortion are those of its last `LAST_PART_S`. A quantity whose
+    channels are missing or not finite is None.
 
     Parameters
     ----------
@@ -91,6 +95,7 @@ def _measure_window(
         return None
     try:
         last = _last_part(waveforms, segment, span, frequency_hz)
+        frequency_hz = _frequency_of(last, nominal, frequency_hz)
         quantities = _voltages(segment, last, nominal, frequency_hz) | _currents(segment, last, nominal, frequency_hz)
         quantities |= _powers(segment, frequency_hz) | _dc_voltage(segment, frequency_hz)
     except MeasurementError:
@@ -127,6 +132,12 @@ def _voltages(segment: Segment, last: Segment, nominal: Nominal, frequency_hz: f
         "voltage_negative_pu": abs(negative) / nominal.phase_voltage_peak_v,
         "frequency_hz": _window_frequency(last, nominal, frequency_hz),
     }
+
+
+def _frequency_of(segment: Segment, nominal: Nominal, before_hz: float) -> float:
+    """Frequency that a window is measured at: over many cycles a component at another one averages out."""
+    own_hz = _window_frequency(segment, nominal, before_hz) if _has(segment, "u") else None
+    return before_hz if own_hz is None or abs(own_hz - before_hz) <= OTHER_FREQUENCY_HZ else own_hz
 
 
 def _window_frequency(segment: Segment, nominal: Nominal, frequency_hz: float) -> float | None:

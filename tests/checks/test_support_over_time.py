@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from pvlvrt_compliance.checks.results import Status
+from pvlvrt_compliance.scenario.events import VoltageProfile
 from pvlvrt_compliance.scenario.sag import Sag
 
 CYCLE_S = 0.02
@@ -135,11 +136,11 @@ def test_sag_over_before_the_limit(timed):
 def sharing(bench, demanding):
     """Make a record of a sag whose current of 0.8 pu is reactive in a given share."""
 
-    def make(share, depth=0.5, current_pu=0.8, changed=None, **settings):
+    def make(share, depth=0.5, current_pu=0.8, changed=None, detection=None, **settings):
         def at_angle(part):
             return lambda t: 500 * (1 - depth) * current_pu * part(share(t) if callable(share) else share + 0 * t)
 
-        profile = demanding(reactive_ratio=RATIO | (changed or {}))
+        profile = demanding(detection, reactive_ratio=RATIO | (changed or {}))
         p, q = at_angle(lambda s: np.sqrt(1 - s**2)), at_angle(lambda s: s)
         return bench(depth=depth, profile=profile, p_sag_kw=p, q_sag_kvar=q, **settings)
 
@@ -155,6 +156,25 @@ def test_share(sharing, depth, demanded, inside_by, status):
     assert check.limit == pytest.approx(demanded - 0.01, abs=1e-3)
     assert check.margin == pytest.approx(inside_by, abs=2e-4)
     assert 0.45 <= check.at_s <= 0.6
+
+
+@pytest.mark.parametrize(("depth", "status"), [(0.145, Status.NOT_APPLICABLE), (0.155, Status.FAIL)])
+def test_no_share_without_an_event(sharing, depth, status):
+    """Above the threshold of detection there is no sag: nothing is demanded, and nothing forbidden."""
+    assert sharing(-0.05, depth=depth, detection=DETECTION).check("reactive_ratio").status is status
+
+
+@pytest.mark.parametrize("levels", [{}, {"enter_above_pu": 1.1, "leave_below_pu": 1.1}])
+@pytest.mark.parametrize(("depth", "swelling"), [(-0.09, False), (-0.11, True)])
+def test_a_share_in_a_swell(sharing, levels, depth, swelling):
+    """A swell is an event where the profile has thresholds for it."""
+    curve = RATIO["curve"] | {"points": [[0.5, 0.9], [0.85, 0], [1.05, 0.3]]}
+    voltage = VoltageProfile(points=((0.0, 1 - depth), (0.3, 1 - depth), (0.3, 1.0)))
+    made = sharing(
+        0.0, depth=0, changed={"curve": curve}, detection=DETECTION | levels, scenario={"events": (voltage,)}
+    )
+    expected = Status.FAIL if levels and swelling else Status.NOT_APPLICABLE
+    assert made.check("reactive_ratio").status is expected
 
 
 @pytest.mark.parametrize(("late_s", "status"), [(0.129, Status.PASS), (0.139, Status.FAIL)])

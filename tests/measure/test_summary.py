@@ -67,6 +67,22 @@ def test_a_sag_is_measured_in_all_windows(sag_record, frequency_hz):
     assert measured_hz == pytest.approx([frequency_hz] * 3, abs=1e-3)
 
 
+@pytest.mark.parametrize("later_hz", [50.7, 49.0])
+def test_a_frequency_that_is_another_one_in_the_window(three_phase, dt_s, later_hz):
+    """Where the frequency steps as the test begins, what follows is measured at the new one."""
+    n = int(END_S / dt_s)
+    before = dt_s * np.arange(n) < START_S
+    channels = {}
+    for kind, base in (("u", U), ("i", I)):
+        first, then = (three_phase(kind, (base, 0.1 * base, 0), f, n) for f in (50.0, later_hz))
+        channels |= {name: np.where(before, first[name], then[name]) for name in first}
+    found = measure(record(channels), NOMINAL, START_S, 1.1)
+    for window in (found.before, found.during):
+        assert window.voltage_positive_pu == pytest.approx(1, abs=1e-4)
+        assert window.voltage_negative_pu == pytest.approx(0.1, abs=1e-4)
+        assert window.active_power_kw == pytest.approx(505, abs=0.1)
+
+
 def test_reactive_power_is_positive_when_the_current_lags(sag_record):
     """Q = 3/2 |U+| |I+| for a current 90 degrees behind."""
     found = measure(record(sag_record(u_sag=(0.4, 0, 0), i_sag=(-1j, 0, 0))), NOMINAL, START_S, CLEAR_S)

@@ -3,6 +3,7 @@
 import pytest
 
 from pvlvrt_compliance.checks.results import Status
+from wrong_controllers import Wrong, wrong_run
 
 SAGS = ("three-phase 90 %", "phase c 90 %", "phase c 50 %")
 
@@ -30,26 +31,26 @@ def test_no_reactive_support(judge, wrong_runs, sag):
 
 
 @pytest.mark.parametrize("frequency_hz", [50.0, 60.0])
-def test_balanced_currents(judge, wrong_runs, frequency_hz):
+def test_balanced_currents(judge, frequency_hz):
     """Balanced currents let the active power swing at 2f, and the DC voltage with it."""
-    result = judge("phase c 90 %", wrong_runs["balanced_currents"], frequency_hz=frequency_hz)
+    result = judge("phase c 90 %", assignments=["controller.power_strategy=balanced"], frequency_hz=frequency_hz)
     assert found(result) == {Status.FAIL: {"dc_ripple"}}
 
 
-def test_no_current_limit(judge, wrong_runs):
+def test_no_current_limit(judge):
     """All that the array gives at 800 W/m2 is too much current at 0.833 pu, and nothing else is wrong."""
-    result = judge("phase c 50 %", wrong_runs["no_current_limit"], irradiance_w_m2=800)
+    result = judge("phase c 50 %", wrong_run(Wrong.NO_CURRENT_LIMIT), irradiance_w_m2=800)
     assert found(result) == {Status.FAIL: {"current_limit"}}
 
 
-def test_no_current_limit_at_full_power(judge, wrong_runs):
+def test_no_current_limit_at_full_power(judge):
     """Nominal power at 0.833 pu is too much current, and swings the DC voltage as the closed form says.
 
     Constant power at the PCC leaves the swing of the filter's energy to the DC link: an amplitude of
     2w L |i+| |i-| / (2w C v_DC) = L |i+| |i-| / (C v_DC), where |i-| / |i+| = V- / V+ by eq (5). It is beyond 0.15 %
     in any plant with this filter and this capacitor.
     """
-    result = judge("phase c 50 %", wrong_runs["no_current_limit"])
+    result = judge("phase c 50 %", wrong_run(Wrong.NO_CURRENT_LIMIT))
     assert found(result) == {Status.FAIL: {"current_limit", "dc_ripple"}}
     window = result.measurements.during
     v_pos, v_neg = 398.37 * window.voltage_positive_pu, 398.37 * window.voltage_negative_pu
@@ -58,9 +59,9 @@ def test_no_current_limit_at_full_power(judge, wrong_runs):
     assert window.dc_voltage_2f_percent == pytest.approx(100 * swing_v / window.dc_voltage_mean_v, rel=0.03)
 
 
-def test_no_current_limit_trips_in_a_deep_sag(judge, wrong_runs):
+def test_no_current_limit_trips_in_a_deep_sag(judge):
     """Nominal power at 0.1 pu trips the inverter: a failed ride-through, and nothing left to judge."""
-    result = judge("three-phase 90 %", wrong_runs["no_current_limit"])
+    result = judge("three-phase 90 %", wrong_run(Wrong.NO_CURRENT_LIMIT))
     assert found(result) == {
         Status.FAIL: {"ride_through"},
         Status.NOT_APPLICABLE: {"current_limit", "reactive_support", "dc_ripple"},
@@ -87,9 +88,9 @@ def test_bridge_blocked_for_good(judge, wrong_runs, sag):
 
 
 @pytest.mark.parametrize("sag", SAGS)
-def test_dc_voltage_regulator_with_reversed_sign(judge, wrong_runs, sag):
+def test_dc_voltage_regulator_with_reversed_sign(judge, sag):
     """An inverter that feeds nothing before the sag is not tested at all: nothing is evaluated."""
-    result = judge(sag, wrong_runs["dc_sign_reversed"])
+    result = judge(sag, wrong_run(Wrong.DC_SIGN_REVERSED))
     assert {check.status for check in result.checks} == {Status.NOT_EVALUATED}
 
 
