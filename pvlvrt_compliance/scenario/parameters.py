@@ -31,7 +31,17 @@ class SimulationParameters(_Group):
     )
     plant_step_us: Positive = 5.1196
     control_ratio: int = Field(default=8, ge=1, le=1000, description="plant steps in a control period")
-    settling_s: Annotated[FiniteFloat, Field(ge=0, le=60)] = 0.5
+    settling_s: Annotated[FiniteFloat, Field(ge=0, le=60)] = Field(
+        default=0.5, description="unrecorded, before a record; with a controller of the user's own 1 s unless set"
+    )
+    synchronising_s: Annotated[FiniteFloat, Field(ge=0, le=60)] = Field(
+        default=0.2,
+        description="before settling: a controller of the user's own sees the steady state, and does not act yet",
+    )
+    time_limit_s: Positive | None = Field(
+        default=None,
+        description="of computing, for one run of a user's own controller; none: 60 s and 20 times the run's length",
+    )
 
 
 class PlantParameters(_Group):
