@@ -5,7 +5,7 @@ from contextlib import contextmanager, suppress
 from datetime import datetime
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn
@@ -28,12 +28,16 @@ from pvlvrt_compliance.waveforms import Waveforms
 from pvlvrt_compliance.waveforms.comtrade import write_comtrade
 from pvlvrt_compliance.waveforms.csv import write_csv
 
+if TYPE_CHECKING:
+    from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
+
 _INTERRUPTED_STATUS = 130
 
 
 def execute(request: Request, job: Job) -> int:
     """Run what was asked for and return the exit status."""
-    run = _Run(request, job, created_at(), OutputFolder(request.output))
+    controller = _own_controller(request, job)
+    run = _Run(request, job, created_at(), OutputFolder(request.output), controller)
     try:
         run.simulate()
         results = run.write_reports()
@@ -49,14 +53,34 @@ def execute(request: Request, job: Job) -> int:
     return 0 if request.exit_zero else EXIT_STATUS[results.status]
 
 
+def _own_controller(request: Request, job: Job) -> "ForeignSimulator | None":
+    """Open the user's own controller, if there is one.
+
+    Raises
+    ------
+    UsageError
+        When it cannot be opened, or its sample time does not fit the plant step.
+    """
+    if request.controller is None:
+        return None
+    from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
+
+    controller = ForeignSimulator(request.controller, job.given)
+    controller.provenance(job.parameters)
+    return controller
+
+
 class _Run:
     """One run: the tests that are finished, their figures, and where its files go."""
 
-    def __init__(self, request: Request, job: Job, created: datetime, output: OutputFolder) -> None:
+    def __init__(
+        self, request: Request, job: Job, created: datetime, output: OutputFolder, controller: "ForeignSimulator | None"
+    ) -> None:
         self.request = request
         self.job = job
         self.created = created
         self.output = output
+        self.controller = controller
         self.finished: list[TestResult] = []
         self.figures: dict[str, dict[str, Any]] = {}
         self.files: dict[Scenario, str] = {}  # names of the waveforms that are written
@@ -71,7 +95,7 @@ class _Run:
             from pvlvrt_compliance.study.run import Judged, run_test
             from pvlvrt_compliance.study.sharing import SharedSimulator, rows_of, shared_together
 
-            simulator = SharedSimulator(simulate, self.job.tests)
+            simulator = SharedSimulator(self.controller or simulate, self.job.tests)
 
             def judge_one(profile: Profile, test: TestCase) -> Judged:
                 advance(f"{profile.id} {test.id}", len(self.finished))
@@ -89,7 +113,8 @@ class _Run:
     def results(self) -> Results:
         """What is finished, as one result object, in the order of the profiles."""
         job = self.job
-        origin = provenance(job.profiles, job.parameters, self.request.command, self.created)
+        own = self.controller.provenance(job.parameters) if self.controller else {}
+        origin = provenance(job.profiles, job.parameters, self.request.command, self.created, own)
         summaries = [
             summarise(profile, *(_of(profile, items) for items in (job.tests, job.left_out)))
             for profile in job.profiles

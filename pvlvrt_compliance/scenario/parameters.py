@@ -1,6 +1,7 @@
 """Every parameter of plant, protection, controller and simulation, in words with units: what `--set` reaches."""
 
 import json
+import math
 from collections.abc import Iterable
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self, get_origin
@@ -218,6 +219,49 @@ def parameters_from(assignments: Iterable[str]) -> Parameters:
         return Parameters.model_validate_json(json.dumps(groups), strict=True)
     except ValidationError as error:
         raise UsageError("; ".join(_problem(e["loc"], e["msg"]) for e in error.errors())) from None
+
+
+OF_THE_HOST = frozenset({"computation_delay_samples"})
+"""Names in the group ``controller`` that say how any controller is run, also one of the user's own."""
+
+
+def own_parameters(assignments: Iterable[str]) -> tuple[dict[str, float | int | bool | str], tuple[str, ...]]:
+    """Split ``controller.NAME=value``, the parameters of a user's own controller, from the assignments that are not.
+
+    Returns
+    -------
+    tuple of dict and tuple
+        Values by name, a word where it is not JSON; the other assignments as they are.
+
+    Raises
+    ------
+    UsageError
+        When a name is given twice, or a value is not a number, a word or a switch.
+    """
+    own: dict[str, float | int | bool | str] = {}
+    others = []
+    for assignment in assignments:
+        name, equals, text = assignment.partition("=")
+        group, _, key = name.strip().partition(".")
+        if not equals or group != "controller" or key in OF_THE_HOST:
+            others.append(assignment)
+            continue
+        if key in own:
+            raise UsageError(f"--set {name}: given twice")
+        own[key] = _plain_value(name, text)
+    return own, tuple(others)
+
+
+def _plain_value(name: str, text: str) -> float | int | bool | str:
+    try:
+        value = json.loads(text, parse_constant=_refuse)
+    except (ValueError, RecursionError):
+        value = text.strip()
+    if isinstance(value, float) and not math.isfinite(value):
+        raise UsageError(f"--set {name}: {text} is not a number that can be used")
+    if not isinstance(value, (bool, int, float, str)):
+        raise UsageError(f"--set {name}: {text!r} is not a number, true, false or a word")
+    return value
 
 
 def _takes_words(name: str) -> bool:

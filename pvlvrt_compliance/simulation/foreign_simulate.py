@@ -59,7 +59,7 @@ class ForeignSimulator:
 
         def make(plan: RecordingPlan) -> Waveforms:
             in_periods = RecordingPlan(first=rates.thinning * plan.first, step=rates.thinning * plan.step)
-            job = RunJob(self.spec, self._given, scenario, parameters, in_periods)
+            job = RunJob(self.spec, self._given, scenario=scenario, parameters=parameters, plan=in_periods)
             ended, arrays = do_apart(job, limit_s, keep=[RECORD])
             answer = _answer_of(ended)
             return record_of(arrays[RECORD], plan, row_s, answer["channels"])

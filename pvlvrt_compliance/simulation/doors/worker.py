@@ -29,15 +29,16 @@ class DescribeJob:
 
     spec: str
     given: Mapping[str, Value] = field(default_factory=dict)
+    beside: str = field(default_factory=os.getcwd)  # folder that relative names in ``spec`` start from
 
 
 @dataclass(frozen=True)
 class RunJob(DescribeJob):
     """Run a controller through a scenario."""
 
-    scenario: Scenario | None = None
-    parameters: Parameters | None = None
-    plan: RecordingPlan | None = None
+    scenario: Scenario = field(kw_only=True)
+    parameters: Parameters = field(kw_only=True)
+    plan: RecordingPlan = field(kw_only=True)
 
 
 def main() -> None:
@@ -102,6 +103,7 @@ def _do(folder: Path) -> None:
     os.dup2(said, 1)
     os.dup2(said, 2)
     job = pickle.loads((folder / JOB).read_bytes())
+    os.chdir(job.beside)
     try:
         answer = _answer(job, folder)
     except PvlvrtError as error:
@@ -119,7 +121,6 @@ def _answer(job: DescribeJob, folder: Path) -> dict[str, Any]:
         return {"description": door.describe().to_json()}
     from pvlvrt_compliance.simulation.foreign_run import run_through
 
-    assert job.scenario is not None and job.parameters is not None and job.plan is not None
     with (folder / PROGRESS).open("r+b") as file:
         progress: Any = np.frombuffer(mmap.mmap(file.fileno(), 0), dtype=np.float64)
     record = run_through(door, job.scenario, job.parameters, job.plan, progress)
