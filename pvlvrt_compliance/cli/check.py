@@ -37,6 +37,12 @@ def check(
             "--profile", metavar="NAME|FILE", help="Grid code: a known name, a TOML file, or all. Repeatable."
         ),
     ] = None,
+    controller: Annotated[
+        str | None,
+        typer.Option(
+            metavar="SPEC", help="A controller of your own: my_ctrl.py:MyController. Default: the bundled one."
+        ),
+    ] = None,
     sag: Annotated[
         str | None,
         typer.Option(metavar="DEPTH", help="Depth of the sag, 90% or 0.9; 0% is none.", rich_help_panel=_SAG),
@@ -166,6 +172,7 @@ def check(
 
     request = Request(
         profiles=tuple(profiles or ()),
+        controller=controller,
         sag=None if sag is None else SagRequest(sag, phases, two_phase, sag_type, duration, point_on_wave, irradiance),
         overrides={
             "frequency_hz": frequency,

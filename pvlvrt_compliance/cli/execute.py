@@ -29,6 +29,7 @@ from pvlvrt_compliance.waveforms.comtrade import write_comtrade
 from pvlvrt_compliance.waveforms.csv import write_csv
 
 if TYPE_CHECKING:
+    from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
     from pvlvrt_compliance.study.run import Judged
 
 _INTERRUPTED_STATUS = 130
@@ -36,7 +37,8 @@ _INTERRUPTED_STATUS = 130
 
 def execute(request: Request, job: Job) -> int:
     """Run what was asked for and return the exit status."""
-    run = _Run(request, job, created_at(), OutputFolder(request.output))
+    controller = _own_controller(request, job)
+    run = _Run(request, job, created_at(), OutputFolder(request.output), controller)
     try:
         run.simulate()
         results = run.write_reports()
@@ -55,14 +57,34 @@ def execute(request: Request, job: Job) -> int:
     return 0 if request.exit_zero else EXIT_STATUS[results.status]
 
 
+def _own_controller(request: Request, job: Job) -> "ForeignSimulator | None":
+    """Open the user's own controller, if there is one.
+
+    Raises
+    ------
+    UsageError
+        When it cannot be opened, or its sample time does not fit the plant step.
+    """
+    if request.controller is None:
+        return None
+    from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
+
+    controller = ForeignSimulator(request.controller, job.given)
+    controller.provenance(job.parameters)
+    return controller
+
+
 class _Run:
     """One run: the tests that are finished, their figures, and where its files go."""
 
-    def __init__(self, request: Request, job: Job, created: datetime, output: OutputFolder) -> None:
+    def __init__(
+        self, request: Request, job: Job, created: datetime, output: OutputFolder, controller: "ForeignSimulator | None"
+    ) -> None:
         self.request = request
         self.job = job
         self.created = created
         self.output = output
+        self.controller = controller
         self.finished: list[TestResult] = []
         self.figures: dict[str, dict[str, Any]] = {}
         self.files: dict[Scenario, str] = {}  # names of the waveforms that are written
@@ -78,7 +100,7 @@ class _Run:
 
             rows = shared_together(rows_of(self.job.tests))
             in_order = [item for row in rows for item in row]
-            with SharedSimulator(simulate, in_order, self.job.parameters) as simulator:
+            with SharedSimulator(self.controller or simulate, in_order, self.job.parameters) as simulator:
 
                 def judge_one(profile: Profile, test: TestCase) -> "Judged":
                     advance(f"{profile.id} {test.id}", len(self.finished))
@@ -101,7 +123,8 @@ class _Run:
     def results(self) -> Results:
         """What is finished, as one result object, in the order of the profiles."""
         job = self.job
-        origin = provenance(job.profiles, job.parameters, self.request.command, self.created)
+        own = self.controller.provenance(job.parameters) if self.controller else {}
+        origin = provenance(job.profiles, job.parameters, self.request.command, self.created, own)
         summaries = [
             summarise(profile, *(_of(profile, items) for items in (job.tests, job.left_out)))
             for profile in job.profiles

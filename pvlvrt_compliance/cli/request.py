@@ -11,7 +11,7 @@ from pvlvrt_compliance.profile.loading import load_profile
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.search_path import known_profiles
 from pvlvrt_compliance.scenario.files import load_events
-from pvlvrt_compliance.scenario.parameters import Parameters, parameters_from
+from pvlvrt_compliance.scenario.parameters import Parameters, own_parameters, parameters_from
 from pvlvrt_compliance.scenario.sag import PAIRS, Sag, Type
 from pvlvrt_compliance.study.selection import Assignment, keep_short, select
 from pvlvrt_compliance.units import parse_duration, parse_fraction
@@ -53,6 +53,7 @@ class Request(NamedTuple):
     """The whole command line."""
 
     profiles: tuple[str, ...]
+    controller: str | None  # of the user's own
     sag: SagRequest | None
     overrides: dict[str, float | str | None]
     events: str | None
@@ -75,6 +76,7 @@ class Job(NamedTuple):
     tests: tuple[Assignment, ...]
     left_out: tuple[Assignment, ...]  # long tests that nobody asked for
     parameters: Parameters
+    given: dict[str, float | int | bool | str]  # parameters of the user's own controller, as far as they are set
 
 
 def prepare(request: Request) -> Job:
@@ -88,7 +90,7 @@ def prepare(request: Request) -> Job:
     if request.waveforms not in WAVEFORMS_KEPT:
         raise UsageError(f"--waveforms {request.waveforms}: allowed are {', '.join(WAVEFORMS_KEPT)}")
     profiles = _profiles(request.profiles)
-    parameters = _parameters(request)
+    parameters, given = _parameters(request)
     try:
         found = _tests(profiles, request)
     except UsageError as error:
@@ -100,7 +102,7 @@ def prepare(request: Request) -> Job:
     if not tests:
         names = ", ".join(profile.id for profile in profiles)
         raise UsageError(f"{names}: the profile has no tests of its own; give one, for instance --sag 90%")
-    return Job(profiles, tests, tuple(item for item in found if item not in tests), parameters)
+    return Job(profiles, tests, tuple(item for item in found if item not in tests), parameters, given)
 
 
 def _profiles(names: Sequence[str]) -> tuple[Profile, ...]:
@@ -115,11 +117,13 @@ def _profiles(names: Sequence[str]) -> tuple[Profile, ...]:
     return tuple(profiles)
 
 
-def _parameters(request: Request) -> Parameters:
+def _parameters(request: Request) -> tuple[Parameters, dict[str, float | int | bool | str]]:
+    """Parameters of plant and simulation with the bundled controller's, and those of the user's own."""
+    own, others = own_parameters(request.assignments) if request.controller else ({}, request.assignments)
     if request.fidelity is None:
-        return parameters_from(request.assignments)
+        return parameters_from(others), own
     try:
-        return parameters_from((*request.assignments, f"simulation.fidelity={request.fidelity}"))
+        return parameters_from((*others, f"simulation.fidelity={request.fidelity}")), own
     except UsageError as error:
         raise UsageError(str(error).replace("--set simulation.fidelity:", "--fidelity:")) from None
 

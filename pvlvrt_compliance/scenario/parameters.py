@@ -1,6 +1,7 @@
 """Every parameter of plant, protection, controller and simulation, in words with units: what `--set` reaches."""
 
 import json
+import math
 from collections.abc import Iterable
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self, get_origin
@@ -31,7 +32,17 @@ class SimulationParameters(_Group):
     )
     plant_step_us: Positive = 5.1196
     control_ratio: int = Field(default=8, ge=1, le=1000, description="plant steps in a control period")
-    settling_s: Annotated[FiniteFloat, Field(ge=0, le=60)] = 0.5
+    settling_s: Annotated[FiniteFloat, Field(ge=0, le=60)] = Field(
+        default=0.5, description="unrecorded, before a record; with a controller of the user's own 1 s unless set"
+    )
+    synchronising_s: Annotated[FiniteFloat, Field(ge=0, le=60)] = Field(
+        default=0.2,
+        description="before settling: a controller of the user's own sees the steady state, and does not act yet",
+    )
+    time_limit_s: Positive | None = Field(
+        default=None,
+        description="of computing, for one run of a user's own controller; none: 60 s and 20 times the run's length",
+    )
 
 
 class PlantParameters(_Group):
@@ -208,6 +219,49 @@ def parameters_from(assignments: Iterable[str]) -> Parameters:
         return Parameters.model_validate_json(json.dumps(groups), strict=True)
     except ValidationError as error:
         raise UsageError("; ".join(_problem(e["loc"], e["msg"]) for e in error.errors())) from None
+
+
+OF_THE_HOST = frozenset({"computation_delay_samples"})
+"""Names in the group ``controller`` that say how any controller is run, also one of the user's own."""
+
+
+def own_parameters(assignments: Iterable[str]) -> tuple[dict[str, float | int | bool | str], tuple[str, ...]]:
+    """Split ``controller.NAME=value``, the parameters of a user's own controller, from the assignments that are not.
+
+    Returns
+    -------
+    tuple of dict and tuple
+        Values by name, a word where it is not JSON; the other assignments as they are.
+
+    Raises
+    ------
+    UsageError
+        When a name is given twice, or a value is not a number, a word or a switch.
+    """
+    own: dict[str, float | int | bool | str] = {}
+    others = []
+    for assignment in assignments:
+        name, equals, text = assignment.partition("=")
+        group, _, key = name.strip().partition(".")
+        if not equals or group != "controller" or key in OF_THE_HOST:
+            others.append(assignment)
+            continue
+        if key in own:
+            raise UsageError(f"--set {name}: given twice")
+        own[key] = _plain_value(name, text)
+    return own, tuple(others)
+
+
+def _plain_value(name: str, text: str) -> float | int | bool | str:
+    try:
+        value = json.loads(text, parse_constant=_refuse)
+    except (ValueError, RecursionError):
+        value = text.strip()
+    if isinstance(value, float) and not math.isfinite(value):
+        raise UsageError(f"--set {name}: {text} is not a number that can be used")
+    if not isinstance(value, (bool, int, float, str)):
+        raise UsageError(f"--set {name}: {text!r} is not a number, true, false or a word")
+    return value
 
 
 def _takes_words(name: str) -> bool:

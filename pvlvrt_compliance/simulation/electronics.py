@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from pvlvrt_compliance.control.controller import Measured
-from pvlvrt_compliance.control.delays import DelayParams, filled
+from pvlvrt_compliance.control.delays import DelayLines, DelayParams, filled
 from pvlvrt_compliance.control.hardware import Hardware
 from pvlvrt_compliance.control.sensors import CHANNELS, SensorParams
 from pvlvrt_compliance.scenario.parameters import ControllerParameters, Parameters, SensorParameters
@@ -31,6 +31,16 @@ def sensor_params(s: SensorParameters) -> SensorParams:
     )
 
 
+def delay_lines_of(parameters: Parameters, start: Start) -> DelayLines:
+    """What is under way around the controller in the steady state of the start."""
+    at_start = Measured(u_g_ab=start.u_g_ab, i_ab=start.plant.i, v_dc=start.plant.v_dc, i_pv=start.plant.i_pv)
+    periods = DelayParams(
+        measurement=parameters.sensors.measurement_delay_samples,
+        computation=parameters.controller.computation_delay_samples,
+    )
+    return filled(periods, at_start, start.m)
+
+
 def hardware_of(parameters: Parameters, start: Start, periods: int) -> Hardware | None:
     """Hardware of a run over so many control periods, in the steady state of its start; none where it is ideal."""
     s, delay = parameters.sensors, parameters.controller.computation_delay_samples
@@ -38,10 +48,9 @@ def hardware_of(parameters: Parameters, start: Start, periods: int) -> Hardware 
     if s == SensorParameters() and delay == default:
         return None
     sensors = sensor_params(s)
-    at_start = Measured(u_g_ab=start.u_g_ab, i_ab=start.plant.i, v_dc=start.plant.v_dc, i_pv=start.plant.i_pv)
     rows = periods if sensors.noise.any() else 1
     return Hardware(
         sensors=sensors,
-        lines=filled(DelayParams(measurement=s.measurement_delay_samples, computation=delay), at_start, start.m),
+        lines=delay_lines_of(parameters, start),
         random=np.random.default_rng(s.noise_seed).standard_normal((rows, len(CHANNELS))),
     )

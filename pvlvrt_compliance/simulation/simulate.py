@@ -1,6 +1,7 @@
 """From a scenario and parameters to waveforms."""
 
 import math
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,16 +55,33 @@ def simulate(  # type: ignore[no-untyped-def]
         When a number stops being finite, with the simulated time.
     """
     tables = plant_tables(parameters, scenario)
-    T_reg = control_period_s(parameters)
+
+    def make(plan: RecordingPlan) -> Waveforms:
+        return _run(scenario, parameters, tables, plan, run)
+
+    return recorded(scenario, tables.playback, control_period_s(parameters), make, thin=thin)
+
+
+def recorded(
+    scenario: Scenario,
+    playback: PlaybackTable | None,
+    T_reg: float,
+    make: Callable[[RecordingPlan], Waveforms],
+    *,
+    thin: bool = True,
+) -> Waveforms:
+    """Record of a scenario that holds every period (of ``T_reg``, s) where something happens, as `simulate` says.
+
+    ``make`` runs the scenario by a plan; it is called again where the inverter has tripped while the record was thin.
+    """
     periods = math.floor(scenario.end_s / T_reg) + 1
-    busy = [*busy_stretches(scenario), *_played(tables.playback)]
-    plan = plan_of(busy, periods, T_reg) if thin else every_period(periods)
-    waveforms = _run(scenario, parameters, tables, plan, run)
+    busy = [*busy_stretches(scenario), *_played(playback)]
+    waveforms = make(plan_of(busy, periods, T_reg) if thin else every_period(periods))
     opened_s = _opened_while_thin_s(waveforms)
     if opened_s is None:
         return waveforms
     del waveforms  # the second record takes its place
-    return _run(scenario, parameters, tables, plan_of([*busy, (opened_s, opened_s)], periods, T_reg), run)
+    return make(plan_of([*busy, (opened_s, opened_s)], periods, T_reg))
 
 
 def _played(playback: PlaybackTable | None) -> list[Stretch]:
@@ -97,16 +115,18 @@ def _run(  # type: ignore[no-untyped-def]
     outcome = run(start.plant, state, start.m, -settling, plant, tables, controller, hardware, plan, samples)
     if outcome.status != COMPLETED:
         raise SimulationError(f"a number stopped being finite at {outcome.periods * T_reg:.4f} s")
-    return _record(samples, plan, T_reg)
+    return record_of(samples, plan, T_reg)
 
 
-def _record(samples: NDArray[np.float64], plan: RecordingPlan, T_reg: float) -> Waveforms:
-    """Rows as segments, one a stretch."""
+def record_of(
+    samples: NDArray[np.float64], plan: RecordingPlan, T_reg: float, channels: Sequence[str] = CHANNELS
+) -> Waveforms:
+    """Rows as segments, one a stretch; columns as channels."""
     segments = []
     row = 0
     for first, step, rows in zip(plan.first.tolist(), plan.step.tolist(), plan.rows, strict=False):
         columns = np.ascontiguousarray(samples[row : row + rows].T)
-        segments.append(Segment(first * T_reg, step * T_reg, dict(zip(CHANNELS, columns, strict=True))))
+        segments.append(Segment(first * T_reg, step * T_reg, dict(zip(channels, columns, strict=True))))
         row += rows
     return Waveforms(tuple(segments))
 

@@ -2,7 +2,7 @@
 
 import os
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import version
 from typing import Any
@@ -34,16 +34,22 @@ def created_at() -> datetime:
 
 
 def provenance(
-    profiles: Sequence[Profile], parameters: Parameters, command: Sequence[str], created: datetime
+    profiles: Sequence[Profile],
+    parameters: Parameters,
+    command: Sequence[str],
+    created: datetime,
+    controller: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """Everything that decides the figures of a run, as `results.json` carries it."""
+    """Everything that decides the figures of a run, as `results.json` carries it.
+
+    ``controller`` says what a controller of the user's own is; without, it is the bundled one.
+    """
     return {
         "created": created.isoformat(),
         "command": _quoted(command),
         "profile": ", ".join(profile.id for profile in profiles),
         "profile_digest": ", ".join(profile.digest for profile in profiles),
-        "controller": "bundled",
-        "controller_digest": kernel_digest(),
+        **(controller or {"controller": "bundled", "controller_digest": kernel_digest()}),
         "versions": {
             "pvlvrt-compliance": __version__,
             "python": platform.python_version(),

@@ -69,8 +69,9 @@ class SharedSimulator:
         self._wanted[scenario] -= 1
         waveforms = self._kept.get(scenario)
         if waveforms is None:
-            ahead = self._ahead.pop(scenario, None)
-            waveforms = ahead.result() if ahead else self._simulator(scenario, parameters)
+            # Always in the one thread: a simulator need not stand two runs at a time.
+            ahead = self._ahead.pop(scenario, None) or self._pool.submit(self._simulator, scenario, parameters)
+            waveforms = ahead.result()
         if self._wanted[scenario] > 0:
             self._kept[scenario] = waveforms
         else:

@@ -1,0 +1,138 @@
+"""What runs in the process of a user's controller: a server that does jobs, and the jobs."""
+
+import json
+import mmap
+import os
+import pickle
+import select
+import signal
+import sys
+import traceback
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO, Any, NoReturn
+
+import numpy as np
+
+from pvlvrt_compliance.errors import PvlvrtError, SimulationError
+from pvlvrt_compliance.scenario.parameters import Parameters
+from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.doors.base import Value
+from pvlvrt_compliance.simulation.doors.opening import door_to
+from pvlvrt_compliance.simulation.isolation import ANSWER, FORKS, JOB, PROGRESS, RECORD, SAID
+from pvlvrt_compliance.simulation.recorder import RecordingPlan
+
+
+@dataclass(frozen=True)
+class DescribeJob:
+    """Ask a controller for its description."""
+
+    spec: str
+    given: Mapping[str, Value] = field(default_factory=dict)
+    beside: str = field(default_factory=os.getcwd)  # folder that relative names in ``spec`` start from
+
+
+@dataclass(frozen=True)
+class RunJob(DescribeJob):
+    """Run a controller through a scenario."""
+
+    scenario: Scenario = field(kw_only=True)
+    parameters: Parameters = field(kw_only=True)
+    plan: RecordingPlan = field(kw_only=True)
+
+
+def main() -> None:
+    """Serve: a line in, the folder of a job; lines out, `ready`, then `started PID` and `ended STATUS` for each."""
+    jobs = os.fdopen(os.dup(0), encoding="utf-8")
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    nothing = os.open(os.devnull, os.O_RDWR)
+    os.dup2(nothing, 0)
+    os.dup2(2, 1)  # whatever is printed from here on is no answer
+    from pvlvrt_compliance.simulation.foreign_run import warm_up
+
+    warm_up()
+    _say(answers, "ready")
+    while line := jobs.readline():
+        folder = Path(line.rstrip("\n"))
+        if FORKS:
+            _fork(folder, jobs, answers)
+        else:
+            _say(answers, f"started {os.getpid()}")
+            _do(folder)
+            return
+
+
+def _say(answers: IO[str], line: str) -> None:
+    print(line, file=answers, flush=True)
+
+
+def _fork(folder: Path, jobs: IO[str], answers: IO[str]) -> None:
+    """Do a job in a copy of this process, which ends with it; and with the last reader of the answers."""
+    pid = os.fork()
+    if pid == 0:
+        os.setpgid(0, 0)
+        os.close(jobs.fileno())
+        os.close(answers.fileno())
+        _do_and_exit(folder)
+    _make_group(pid)
+    _say(answers, f"started {pid}")
+    ended = os.pidfd_open(pid)
+    try:
+        found, _, _ = select.select([ended, jobs.fileno()], [], [])
+        if ended not in found:  # the other side has gone: nobody sends a job before it has heard of the last
+            os.killpg(pid, signal.SIGKILL)
+        _, status = os.waitpid(pid, 0)
+    finally:
+        os.close(ended)
+        with suppress(OSError):
+            os.killpg(pid, signal.SIGKILL)  # what the controller has started ends with it
+    _say(answers, f"ended {os.waitstatus_to_exitcode(status)}")
+
+
+def _make_group(pid: int) -> None:
+    """Make the group of a copy before it is named to anybody; the copy does the same, whoever comes first."""
+    with suppress(OSError):
+        os.setpgid(pid, pid)
+
+
+def _do_and_exit(folder: Path) -> NoReturn:
+    """Do a job and end, whatever happens: a copy must never come back to the server's own loop."""
+    try:
+        _do(folder)
+    except BaseException:
+        traceback.print_exc()
+        sys.stderr.flush()
+        os._exit(1)
+    os._exit(0)
+
+
+def _do(folder: Path) -> None:
+    said = os.open(folder / SAID, os.O_WRONLY | os.O_APPEND)
+    os.dup2(said, 1)
+    os.dup2(said, 2)
+    job = pickle.loads((folder / JOB).read_bytes())
+    os.chdir(job.beside)
+    try:
+        answer = _answer(job, folder)
+    except PvlvrtError as error:
+        answer = {"error": str(error), "in_run": isinstance(error, SimulationError)}
+    sys.stdout.flush()
+    sys.stderr.flush()
+    unfinished = folder / f"{ANSWER}.part"
+    unfinished.write_text(json.dumps(answer), "utf-8")
+    unfinished.rename(folder / ANSWER)
+
+
+def _answer(job: DescribeJob, folder: Path) -> dict[str, Any]:
+    door = door_to(job.spec, job.given)
+    if not isinstance(job, RunJob):
+        return {"description": door.describe().to_json()}
+    from pvlvrt_compliance.simulation.foreign_run import run_through
+
+    with (folder / PROGRESS).open("r+b") as file:
+        progress: Any = np.frombuffer(mmap.mmap(file.fileno(), 0), dtype=np.float64)
+    record = run_through(door, job.scenario, job.parameters, job.plan, progress)
+    np.save(folder / RECORD, record.samples)
+    return {"channels": record.channels}

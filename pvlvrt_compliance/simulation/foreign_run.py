@@ -1,0 +1,183 @@
+"""One run with a controller from outside, in this process: see `foreign_simulate` for one that is safe from it."""
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pvlvrt_compliance.errors import SimulationError
+from pvlvrt_compliance.plant.plant import PlantTables
+from pvlvrt_compliance.scenario.parameters import Parameters
+from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation import exchange
+from pvlvrt_compliance.simulation.doors.base import Door, DoorCall, Setting, port_table, real_block
+from pvlvrt_compliance.simulation.electronics import delay_lines_of, hardware_of
+from pvlvrt_compliance.simulation.exchange import COMMANDS, SIGNALS, DoorTable
+from pvlvrt_compliance.simulation.foreign_loop import RECORDED, Timing, run_foreign
+from pvlvrt_compliance.simulation.loop import COMPLETED, NOT_FINITE, Outcome
+from pvlvrt_compliance.simulation.recorder import RecordingPlan, every_period
+from pvlvrt_compliance.simulation.sample_time import Rates, not_below, rates_of, with_rates
+from pvlvrt_compliance.simulation.translate import (
+    Start,
+    controller_params,
+    nominal_of,
+    plant_params,
+    plant_tables,
+    steady_state,
+)
+from pvlvrt_compliance.units import Nominal
+
+SETTLING_S = 1.0
+"""Unrecorded time of a controller from outside, unless it is set (s): it starts at rest."""
+
+_ARMED_AFTER = 0.5  # share of the settling after which the relays trip
+_MOST_NOISE = 2**20  # samples of sensor noise, after which it begins anew
+
+_REASONS: Mapping[int, str] = {
+    NOT_FINITE: "a number of the plant stopped being finite",
+    exchange.OUTPUT_NOT_FINITE: "a command of the controller is not a finite number",
+    exchange.OUTPUT_OUT_OF_RANGE: "a command of the controller is out of range",
+    exchange.CONTROLLER_FAILED: "the controller failed",
+}
+
+
+class ForeignRecord(NamedTuple):
+    """What a run gives: a column of samples for every channel."""
+
+    channels: tuple[str, ...]
+    samples: NDArray[np.float64]
+
+
+def timing_of(parameters: Parameters, rates: Rates, sample_time_s: float) -> Timing:
+    """When the controller begins to see and to act, in whole sample times."""
+    simulation = parameters.simulation
+    settling_s = simulation.settling_s if "settling_s" in simulation.model_fields_set else SETTLING_S
+    settling = not_below(settling_s / rates.sample_time_s)
+    return Timing(
+        first=-settling * rates.periods,
+        armed=-math.ceil((1 - _ARMED_AFTER) * settling) * rates.periods,
+        ratio=rates.periods,
+        held=not_below(simulation.synchronising_s / rates.sample_time_s),
+        sample_time=sample_time_s,
+    )
+
+
+def run_through(
+    door: Door,
+    scenario: Scenario,
+    parameters: Parameters,
+    plan: RecordingPlan,
+    progress: NDArray[np.float64],
+) -> ForeignRecord:
+    """Open a door and run its controller through a scenario.
+
+    Parameters
+    ----------
+    plan : RecordingPlan
+        In periods of `rates_of`.
+    progress : array, shape (1,)
+        Kept at the simulated time (s).
+
+    Raises
+    ------
+    SimulationError
+        When the controller fails or gives what cannot be used, with the simulated time.
+    UsageError
+        When it cannot be opened, or its sample time cannot be used.
+    """
+    sample_time_s = door.describe().sample_time_s
+    rates = rates_of(sample_time_s, parameters)
+    parameters = with_rates(parameters, rates)
+    plant, tables = plant_params(parameters, scenario), plant_tables(parameters, scenario)
+    timing = timing_of(parameters, rates, sample_time_s)
+    period_s = plant.ratio * plant.T_S
+    controller = controller_params(parameters, scenario)
+    start = steady_state(plant, tables.grid, controller, scenario, timing.first * period_s)
+    calls = (int(plan.first[-1]) - timing.first) // timing.ratio + 1
+    nominal = nominal_of(parameters, scenario)
+    opened = door.open(Setting(nominal, start.plant.v_dc))
+    try:
+        table = _table(opened, nominal, controller.lvrt.Q_set)
+        samples = np.empty((sum(plan.rows), len(RECORDED) + len(opened.recorded)))
+        outcome = run_foreign(
+            start.plant,
+            start.m,
+            timing,
+            plant,
+            tables,
+            hardware_of(parameters, start, min(calls, _MOST_NOISE)),
+            delay_lines_of(parameters, start),
+            table,
+            plan,
+            samples,
+            progress,
+        )
+        if outcome.status != COMPLETED:
+            raise SimulationError(_explained(outcome, period_s, table, door.message()))
+    finally:
+        door.close()
+    return ForeignRecord((*RECORDED, *opened.recorded), samples)
+
+
+def _table(opened: DoorCall, nominal: Nominal, q_set_var: float) -> DoorTable:
+    signals = np.zeros(len(SIGNALS))
+    constant = {
+        "p_set_w": nominal.apparent_power_va,
+        "q_set_var": q_set_var,
+        "frequency_nominal_hz": nominal.frequency_hz,
+        "apparent_power_nominal_va": nominal.apparent_power_va,
+        "voltage_nominal_v": nominal.phase_voltage_v,
+    }
+    for name, value in constant.items():
+        signals[SIGNALS.index(name)] = value
+    return DoorTable(
+        address=opened.address,
+        hold_address=opened.hold_address,
+        argument=opened.argument,
+        inputs=port_table(opened.inputs),
+        outputs=port_table(opened.outputs),
+        in_volts=opened.in_volts,
+        signals=signals,
+        commands=np.zeros(len(COMMANDS) + len(opened.recorded)),
+    )
+
+
+def _explained(outcome: Outcome, period_s: float, table: DoorTable, said: str) -> str:
+    t = outcome.periods * period_s
+    text = f"{_REASONS[outcome.status]} at {when(t)}"
+    if outcome.status in (exchange.OUTPUT_NOT_FINITE, exchange.OUTPUT_OUT_OF_RANGE):
+        begin = 3 if table.in_volts else 0
+        given = zip(COMMANDS[begin : begin + 3], table.commands[begin : begin + 3].tolist(), strict=True)
+        text += f": {', '.join(f'{name} = {value:g}' for name, value in given)}"
+        if outcome.status == exchange.OUTPUT_OUT_OF_RANGE:
+            text += f" (at most {exchange.LARGEST[COMMANDS[begin]]:g})"
+    elif outcome.status == exchange.CONTROLLER_FAILED:
+        text += f": {said}" if said else ""
+    return text
+
+
+def when(t: float) -> str:
+    """Simulated time (s) in words."""
+    return f"{t:.4f} s" if t >= 0 else f"{t:.4f} s, before the record begins"
+
+
+def warm_up() -> None:
+    """Have the loop compiled, or read from its cache, without a step."""
+    scenario, parameters = Scenario(sag=Sag(depth=0.9), duration_s=0.3), Parameters()
+    plant, tables = plant_params(parameters, scenario), plant_tables(parameters, scenario)
+    start = steady_state(plant, tables.grid, controller_params(parameters, scenario), scenario, 0.0)
+    opened = DoorCall(address=0, argument=0, inputs=real_block([]), outputs=real_block([]))
+    _run_nothing(start, opened, plan=every_period(0), timing=Timing(0, 0, 1, 0, 1.0), plant=plant, tables=tables)
+
+
+def _run_nothing(  # type: ignore[no-untyped-def]
+    start: Start, opened: DoorCall, plan: RecordingPlan, timing: Timing, plant, tables: PlantTables
+) -> None:
+    table = _table(opened, Nominal(), 0.0)
+    lines = delay_lines_of(Parameters(), start)
+    run_foreign(
+        start.plant, start.m, timing, plant, tables, None, lines, table, plan, np.empty((0, len(RECORDED))), np.zeros(1)
+    )

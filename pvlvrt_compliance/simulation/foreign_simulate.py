@@ -1,0 +1,110 @@
+"""From a scenario and parameters to waveforms, with a controller of the user's own in a process of its own."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from pvlvrt_compliance.errors import SimulationError, UsageError
+from pvlvrt_compliance.scenario.parameters import Parameters
+from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.doors.base import Description, Value
+from pvlvrt_compliance.simulation.doors.worker import DescribeJob, RunJob
+from pvlvrt_compliance.simulation.foreign_run import when
+from pvlvrt_compliance.simulation.isolation import RECORD, Ended, do_apart
+from pvlvrt_compliance.simulation.recorder import RecordingPlan
+from pvlvrt_compliance.simulation.sample_time import rates_of
+from pvlvrt_compliance.simulation.simulate import record_of, recorded
+from pvlvrt_compliance.simulation.surroundings import playback_table
+from pvlvrt_compliance.waveforms import Waveforms
+
+_OPENING_LIMIT_S = 60.0
+_LIMIT_S, _LIMIT_PER_S = 60.0, 20.0  # of computing, and more of it for every second of the record
+
+
+class ForeignSimulator:
+    """Simulator (`simulation.simulate.simulate` is the bundled one) with a controller from outside.
+
+    Parameters
+    ----------
+    spec : str
+        The controller, ``my_ctrl.py:MyController``.
+    given : mapping
+        Its parameters, as far as they are set.
+
+    Raises
+    ------
+    UsageError
+        When it cannot be opened.
+    """
+
+    def __init__(self, spec: str, given: Mapping[str, Value] | None = None) -> None:
+        self.spec = spec
+        self._given = dict(given or {})
+        self.description = self._describe()
+
+    def __call__(self, scenario: Scenario, parameters: Parameters) -> Waveforms:
+        """Run the controller through a scenario.
+
+        Raises
+        ------
+        SimulationError
+            When the controller fails, crashes, does not come to an end, or gives what cannot be used; with the
+            simulated time, the reason, and the end of what it has printed.
+        UsageError
+            When its sample time does not fit the plant step that is set.
+        """
+        rates = rates_of(self.description.sample_time_s, parameters)
+        period_s = rates.sample_time_s / rates.periods
+        row_s = rates.thinning * period_s
+        limit_s = parameters.simulation.time_limit_s or _LIMIT_S + _LIMIT_PER_S * scenario.end_s
+
+        def make(plan: RecordingPlan) -> Waveforms:
+            in_periods = RecordingPlan(first=rates.thinning * plan.first, step=rates.thinning * plan.step)
+            job = RunJob(self.spec, self._given, scenario=scenario, parameters=parameters, plan=in_periods)
+            ended, arrays = do_apart(job, limit_s, keep=[RECORD])
+            answer = _answer_of(ended)
+            return record_of(arrays[RECORD], plan, row_s, answer["channels"])
+
+        return recorded(scenario, playback_table(scenario), row_s, make)
+
+    def provenance(self, parameters: Parameters) -> dict[str, Any]:
+        """What identifies the controller and how it was run."""
+        rates = rates_of(self.description.sample_time_s, parameters)
+        return {
+            "controller": self.spec,
+            "controller_kind": self.description.kind,
+            "controller_name": self.description.name,
+            "controller_digest": self.description.digest,
+            "controller_parameters": {p.name: self._given.get(p.name, p.value) for p in self.description.parameters},
+            "controller_sample_time_s": self.description.sample_time_s,
+            "plant_step_us": rates.plant_step_us,
+            "plant_steps_per_sample": rates.steps * rates.periods,
+            "computation_delay_samples": parameters.controller.computation_delay_samples,
+        }
+
+    def _describe(self) -> Description:
+        ended, _ = do_apart(DescribeJob(self.spec, self._given), _OPENING_LIMIT_S)
+        if ended.answer is None:
+            raise UsageError(f"--controller {self.spec}: {_with_said(ended.reason, ended)}")
+        if "error" in ended.answer:
+            raise UsageError(f"--controller {self.spec}: {ended.answer['error']}")
+        return Description.from_json(ended.answer["description"])
+
+
+def _answer_of(ended: Ended) -> dict[str, Any]:
+    """Answer of a run.
+
+    Raises
+    ------
+    SimulationError
+        When there is none, or it is an error.
+    """
+    if ended.answer is None:
+        at = "while it was opened" if ended.progress_s is None else f"at {when(ended.progress_s)}"
+        raise SimulationError(_with_said(f"{ended.reason} {at}", ended))
+    if "error" in ended.answer:
+        raise SimulationError(_with_said(ended.answer["error"], ended))
+    return ended.answer
+
+
+def _with_said(text: str, ended: Ended) -> str:
+    return f"{text}\nit had printed: {ended.said}" if ended.said else text
