@@ -7,8 +7,8 @@ from pvlvrt_compliance.simulation.doors.base import Door, DoorError, Value
 from pvlvrt_compliance.simulation.doors.python_door import PythonDoor
 
 
-def door_to(spec: str, given: Mapping[str, Value]) -> Door:
-    """Door to a controller; ``given`` are the parameters that the user has set.
+def door_to(spec: str, given: Mapping[str, Value], mapping: str | None = None) -> Door:
+    """Door to a controller; ``given`` are the parameters that the user has set, ``mapping`` names a mapping file.
 
     Raises
     ------
