@@ -14,7 +14,7 @@ from pvlvrt_compliance.simulation.doors.mapping_file import (
     MappingFile,
     OutputEntry,
     load_mapping,
-    mapping_beside,
+    mapping_path,
     refusal,
 )
 from pvlvrt_compliance.simulation.doors.port_names import QUANTITIES, Guess, guess_input, guess_output
@@ -24,7 +24,7 @@ from pvlvrt_compliance.simulation.ports import REAL64
 from pvlvrt_compliance.units import Nominal
 
 __all__ = ["Constant", "Mapped", "MappingFile", "RawPort", "check_commands", "load_mapping", "map_inputs"]
-__all__ += ["map_outputs", "mapping_beside", "set_constants"]
+__all__ += ["map_outputs", "mapping_path", "set_constants"]
 
 SHOWN = ("v_fault_pu", "q_ref_var", "p_ref_w")
 """Outputs that are recorded by their names alone: reports show them beside the measurements."""

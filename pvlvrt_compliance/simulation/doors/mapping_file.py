@@ -130,7 +130,13 @@ def refusal(origin: str, problems: Sequence[str]) -> DoorError:
     return DoorError("\n".join([f"{origin}: {count}", *(f"  {problem}" for problem in problems)]))
 
 
-def mapping_beside(controller: Path) -> Path | None:
-    """The mapping file ``<stem>.mapping.toml`` beside a controller's file, when there is one."""
-    found = controller.with_name(controller.stem + ENDING)
-    return found if found.is_file() else None
+def mapping_path(spec: str, named: str | None) -> str | None:
+    """The mapping file of a controller: the one named, else ``<stem>.mapping.toml`` beside it when there is one."""
+    file = Path(spec)
+    if named is not None or file.suffix not in _WITH_PORTS:
+        return named
+    found = file.with_name(file.stem + ENDING)
+    return str(found) if found.is_file() else None
+
+
+_WITH_PORTS = frozenset({".so", ".dll", ".dylib", ".fmu"})

@@ -29,6 +29,7 @@ class DescribeJob:
 
     spec: str
     given: Mapping[str, Value] = field(default_factory=dict)
+    mapping: str | None = None  # file
     beside: str = field(default_factory=os.getcwd)  # folder that relative names in ``spec`` start from
 
 
@@ -116,7 +117,7 @@ def _do(folder: Path) -> None:
 
 
 def _answer(job: DescribeJob, folder: Path) -> dict[str, Any]:
-    door = door_to(job.spec, job.given)
+    door = door_to(job.spec, job.given, job.mapping)
     if not isinstance(job, RunJob):
         return {"description": door.describe().to_json()}
     from pvlvrt_compliance.simulation.foreign_run import run_through
