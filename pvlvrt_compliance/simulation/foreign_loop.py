@@ -15,13 +15,22 @@ from pvlvrt_compliance.control.hardware import Hardware, read
 from pvlvrt_compliance.kernel import cached_kernel, kernel
 from pvlvrt_compliance.plant.grid import source_at
 from pvlvrt_compliance.plant.inverter import K_PWM, limit_modulation
-from pvlvrt_compliance.plant.plant import PlantParams, PlantState, PlantTables, advance, as_at, bridge, observe
+from pvlvrt_compliance.plant.plant import (
+    Observed,
+    PlantParams,
+    PlantState,
+    PlantTables,
+    advance,
+    as_at,
+    bridge,
+    observe,
+)
 from pvlvrt_compliance.plant.protection import NO_TRIP, RelayState
 from pvlvrt_compliance.simulation.loop import COMPLETED, NOT_FINITE, PLANT_CHANNELS, Outcome, record_plant
 from pvlvrt_compliance.simulation.native_call import call_address
 from pvlvrt_compliance.simulation.ports import PortTable, gather, scatter
 from pvlvrt_compliance.simulation.recorder import RecordingPlan, next_row
-from pvlvrt_compliance.vectors import Phases, phases_of, rotation, scaled, turned, vector_of
+from pvlvrt_compliance.vectors import Phases, Rotation, phases_of, rotation, scaled, turned, vector_of
 
 CONTROLLER_FAILED, OUTPUT_NOT_FINITE, OUTPUT_OUT_OF_RANGE = range(2, 5)
 """How a run ended, besides what `loop` has."""
@@ -31,9 +40,10 @@ SIGNALS = (
     *("m_a", "m_b", "m_c", "enabled", "connected", "irradiance_w_m2"),
     *("p_set_w", "q_set_var", "frequency_nominal_hz", "apparent_power_nominal_va", "voltage_nominal_v"),
 )
-"""What a controller can be given, in the order of the signals that its input ports are mapped to."""
+"""What a controller can be given, in the order of the signals that its input ports are mapped to.
 
-_SET_BY_LOOP = 16  # of them; those that follow stay as they are given
+The loop writes those up to ``irradiance_w_m2``; the rest stays as it is given.
+"""
 
 COMMANDS = ("m_a", "m_b", "m_c", "u_a_ref_v", "u_b_ref_v", "u_c_ref_v")
 """What it can command: u_inv = m v_DC / 2, phase to the middle of the link, or that voltage itself (V)."""
@@ -79,15 +89,32 @@ def put_phases(x: NDArray[np.float64], k: int, ab: complex, zero: float) -> None
 
 @kernel
 def put_signals(
-    x: NDArray[np.float64], t: float, y: Measured, u_zero: float, i_dc: float, m: complex, enabled: float
+    x: NDArray[np.float64],
+    t: float,
+    seen: Measured,
+    u_zero: float,
+    plant: PlantState,
+    m: complex,
+    G: float,
+    enabled: float,
 ) -> None:
-    """Write what changes with time, in the order of `SIGNALS`, but for breaker and irradiance."""
+    """Write what changes with time, in the order of `SIGNALS`; the sensors have no part in the bridge's current."""
     x[0] = t
-    put_phases(x, 1, y.u_g_ab, u_zero)
-    put_phases(x, 4, y.i_ab, 0.0)
-    x[7], x[8], x[9] = y.v_dc, i_dc, y.i_pv
+    put_phases(x, 1, seen.u_g_ab, u_zero)
+    put_phases(x, 4, seen.i_ab, 0.0)
+    i_dc = bridge(limit_modulation(m), plant.i, plant.v_dc, plant.trip != NO_TRIP).i_dc
+    x[7], x[8], x[9] = seen.v_dc, i_dc, seen.i_pv
     put_phases(x, 10, scaled(1 / _PER_HALF_LINK, m), 0.0)
-    x[13] = enabled
+    x[13], x[14], x[15] = enabled, 1.0 if plant.closed else 0.0, 1000.0 * G
+
+
+@kernel
+def seen_at(n: int, plant: PlantState, y: Observed, hardware: Hardware | None) -> Measured:
+    """What sensors make of the plant at call ``n``."""
+    seen = Measured(u_g_ab=y.u_ab, i_ab=plant.i, v_dc=plant.v_dc, i_pv=plant.i_pv)
+    if hardware is None:
+        return seen
+    return read(seen, y.u_zero, n, 0, hardware)
 
 
 @kernel
@@ -188,6 +215,58 @@ def record_foreign(row: NDArray[np.float64], m: complex, commands: NDArray[np.fl
         row[n + 2 + k - len(COMMANDS)] = commands[k]
 
 
+@kernel
+def turned_state(x: PlantState, by: Rotation) -> PlantState:
+    """State with its current at another angle; relays and means stay."""
+    return PlantState(
+        i=turned(x.i, by),
+        v_dc=x.v_dc,
+        x_pv=x.x_pv,
+        i_pv=x.i_pv,
+        relay=x.relay,
+        trip=x.trip,
+        t_trip=x.t_trip,
+        closed=x.closed,
+        mean=x.mean,
+    )
+
+
+@kernel
+def synchronised_controller(
+    plant: PlantState,
+    m: complex,
+    timing: Timing,
+    p: PlantParams,
+    tables: PlantTables,
+    door: DoorTable,
+    progress: NDArray[np.float64],
+) -> tuple[int, int, int]:
+    """Let the controller see the steady state that the plant will begin in, turned back in time; nothing moves.
+
+    Returns
+    -------
+    tuple of int
+        How it ended, the period in which it did, and the entry of the grid's breakpoints as the plant begins.
+    """
+    T_c = timing.ratio * p.ratio * p.T_S
+    t = timing.first * p.ratio * p.T_S
+    source = source_at(t, 0, tables.grid)
+    now = as_at(t, source.k, p, tables)
+    y = observe(plant, m, source, t, now, tables)
+    for k in range(timing.held):
+        since = k * T_c
+        back = rotation(tables.grid.w[0] * (since - timing.held * T_c))
+        progress[0] = t + since - timing.held * T_c
+        then, m_then = turned_state(plant, back), turned(m, back)
+        seen = Measured(u_g_ab=turned(y.u_ab, back), i_ab=then.i, v_dc=then.v_dc, i_pv=then.i_pv)
+        put_signals(door.signals, since, seen, 0.0, then, m_then, now.G, 0.0)
+        put_commands(door.commands, m_then, then.v_dc)
+        status = call_held(door)
+        if status != COMPLETED:
+            return status, timing.first - (timing.held - k) * timing.ratio, source.k
+    return COMPLETED, timing.first, source.k
+
+
 @cached_kernel
 def run_foreign(
     plant: PlantState,
@@ -227,46 +306,26 @@ def run_foreign(
         ``periods`` is the period in which the run ended.
     """
     T = plant_params.ratio * plant_params.T_S
-    T_c = timing.ratio * T
-    first = timing.first
-    t = first * T
-    source = source_at(t, 0, tables.grid)
-    now = as_at(t, source.k, plant_params, tables)
-    y = observe(plant, m, source, t, now, tables)
-    relay = plant.relay
-    w = tables.grid.w[0]
-    i_dc = bridge(limit_modulation(m), plant.i, plant.v_dc, False).i_dc
-    door.signals[14], door.signals[15] = 1.0, 1000.0 * now.G
-    for k in range(-timing.held, 0):
-        progress[0] = t + k * T_c
-        back = rotation(w * k * T_c)
-        seen = Measured(u_g_ab=turned(y.u_ab, back), i_ab=turned(plant.i, back), v_dc=plant.v_dc, i_pv=plant.i_pv)
-        put_signals(door.signals, (k + timing.held) * T_c, seen, 0.0, i_dc, turned(m, back), 0.0)
-        put_commands(door.commands, turned(m, back), plant.v_dc)
-        status = call_held(door)
-        if status != COMPLETED:
-            return Outcome(status=status, periods=first + k * timing.ratio, plant=plant)
-    k_grid = source.k
+    status, period, k_grid = synchronised_controller(plant, m, timing, plant_params, tables, door, progress)
+    if status != COMPLETED:
+        return Outcome(status=status, periods=period, plant=plant)
+    relay, latest = plant.relay, m
     row, stretch, due = 0, 0, plan.first[0]
-    latest = m
     calls = 0
-    for n in range(first, plan.first[-1]):
+    for n in range(timing.first, plan.first[-1]):
         t = n * T
         source = source_at(t, k_grid, tables.grid)
         k_grid = source.k
-        called = (n - first) % timing.ratio == 0
+        called = (n - timing.first) % timing.ratio == 0
         if called:
             m = acting(lines, calls)
         now = as_at(t, k_grid, plant_params, tables)
         y = observe(plant, m, source, t, now, tables)
         if called:
             progress[0] = t
-            seen = Measured(u_g_ab=y.u_ab, i_ab=plant.i, v_dc=plant.v_dc, i_pv=plant.i_pv)
-            if hardware is not None:
-                seen = read(seen, y.u_zero, calls, 0, hardware)
-            i_dc = bridge(limit_modulation(m), plant.i, plant.v_dc, plant.trip != NO_TRIP).i_dc
-            put_signals(door.signals, (calls + timing.held) * T_c, seen, y.u_zero, i_dc, m, 1.0)
-            door.signals[14], door.signals[15] = 1.0 if plant.closed else 0.0, 1000.0 * now.G
+            seen = seen_at(calls, plant, y, hardware)
+            since = (calls + timing.held) * timing.ratio * T
+            put_signals(door.signals, since, seen, y.u_zero, plant, m, now.G, 1.0)
             status = call(door)
             if status != COMPLETED:
                 return Outcome(status=status, periods=n, plant=plant)

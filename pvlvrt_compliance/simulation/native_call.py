@@ -4,7 +4,7 @@ import ctypes
 from typing import Any
 
 import numba
-from llvmlite import ir
+from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
 from numba.extending import intrinsic
 
@@ -12,7 +12,7 @@ FUNCTION = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p)
 """What is at the address: ``int32_t function(void *argument)``, 0 when all is well."""
 
 
-@intrinsic  # type: ignore[untyped-decorator]
+@intrinsic
 def _call_compiled(typing_context: Any, address: Any, argument: Any) -> Any:
     """Address and argument are plain integers at run time, so that compiled code is the same for every library."""
     del typing_context, address, argument
@@ -27,7 +27,7 @@ def _call_compiled(typing_context: Any, address: Any, argument: Any) -> Any:
 
 
 def _call_interpreted(address: int, argument: int) -> int:
-    return FUNCTION(address)(argument)
+    return int(FUNCTION(address)(argument))
 
 
 _config: Any = numba.config

@@ -66,23 +66,27 @@ def put_number(memory: Memory, kind: int, place: int, value: float) -> None:
 
 
 @kernel
+def whole_number_at(memory: Memory, kind: int, place: int) -> int:
+    """Read a whole number."""
+    if kind == INT32:
+        return int(memory.int32[place])
+    if kind == UINT32:
+        return int(memory.uint32[place])
+    if kind == INT16:
+        return int(memory.int16[place])
+    if kind == UINT16:
+        return int(memory.uint16[place])
+    return int(memory.uint8[place]) if kind == UINT8 else int(memory.int8[place])
+
+
+@kernel
 def number_at(memory: Memory, kind: int, place: int) -> float:
     """Read a number."""
     if kind == REAL64:
         return float(memory.real64[place])
     if kind == REAL32:
         return float(memory.real32[place])
-    if kind == INT32:
-        return float(memory.int32[place])
-    if kind == UINT32:
-        return float(memory.uint32[place])
-    if kind == INT16:
-        return float(memory.int16[place])
-    if kind == UINT16:
-        return float(memory.uint16[place])
-    if kind == UINT8:
-        return float(memory.uint8[place])
-    return float(memory.int8[place])
+    return float(whole_number_at(memory, kind, place))
 
 
 @kernel

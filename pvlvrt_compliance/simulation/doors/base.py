@@ -184,9 +184,18 @@ def port_table(block: Block) -> PortTable:
     size = len(block.memory)
     if size % 8:
         raise DoorError(f"a block has {size} bytes; it must be a multiple of 8")
-    types = (np.int8, np.uint8, np.int16, np.uint16, np.int32, np.uint32, np.float32, np.float64)
+    x = block.memory
     return PortTable(
-        memory=Memory(*(block.memory.view(kind) for kind in types)),
+        memory=Memory(
+            int8=x.view(np.int8),
+            uint8=x.view(np.uint8),
+            int16=x.view(np.int16),
+            uint16=x.view(np.uint16),
+            int32=x.view(np.int32),
+            uint32=x.view(np.uint32),
+            real32=x.view(np.float32),
+            real64=x.view(np.float64),
+        ),
         kind=np.array([e.kind for e in elements], dtype=np.int64),
         place=np.array([e.byte // ITEM_SIZES[e.kind] for e in elements], dtype=np.int64),
         signal=np.array([e.signal for e in elements], dtype=np.int64),

@@ -226,7 +226,9 @@ def _as_default(name: str, value: Value, known: Mapping[str, Value]) -> Value:
     """Value of the type that the default has."""
     if name not in known:
         has = f"; it has {', '.join(known)}" if known else "; it has none"
-        raise DoorError(f"--set controller.{name}: the controller has no such parameter{did_you_mean(name, known)}{has}")
+        raise DoorError(
+            f"--set controller.{name}: the controller has no such parameter{did_you_mean(name, known)}{has}"
+        )
     kind = type(known[name])
     if kind is float and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
@@ -255,7 +257,9 @@ def _sample_time_s(controller: Any) -> float:
     try:
         found = float(controller.sample_time_s)
     except (TypeError, ValueError):
-        raise DoorError(f"{name}.sample_time_s is {controller.sample_time_s!r}; it must be a number of seconds") from None
+        raise DoorError(
+            f"{name}.sample_time_s is {controller.sample_time_s!r}; it must be a number of seconds"
+        ) from None
     if not (math.isfinite(found) and found > 0):
         raise DoorError(f"{name}.sample_time_s is {found:g}; it must be a number of seconds above zero")
     return found
