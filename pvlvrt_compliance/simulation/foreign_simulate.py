@@ -39,6 +39,7 @@ class ForeignSimulator:
     def __init__(self, spec: str, given: Mapping[str, Value] | None = None) -> None:
         self.spec = spec
         self._given = dict(given or {})
+        self.notes: list[str] = []  # what the controller has said in its runs so far, each once
         self.description = self._describe()
 
     def __call__(self, scenario: Scenario, parameters: Parameters) -> Waveforms:
@@ -62,6 +63,7 @@ class ForeignSimulator:
             job = RunJob(self.spec, self._given, scenario=scenario, parameters=parameters, plan=in_periods)
             ended, arrays = do_apart(job, limit_s, keep=[RECORD])
             answer = _answer_of(ended)
+            self.notes += [note for note in answer["notes"] if note not in self.notes]
             return record_of(arrays[RECORD], plan, row_s, answer["channels"])
 
         return recorded(scenario, playback_table(scenario), row_s, make)
@@ -75,6 +77,7 @@ class ForeignSimulator:
             "controller_name": self.description.name,
             "controller_digest": self.description.digest,
             "controller_parameters": {p.name: self._given.get(p.name, p.value) for p in self.description.parameters},
+            "controller_notes": [*self.description.notes, *self.notes],
             "controller_sample_time_s": self.description.sample_time_s,
             "plant_step_us": rates.plant_step_us,
             "plant_steps_per_sample": rates.steps * rates.periods,

@@ -4,11 +4,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from pvlvrt_compliance.simulation.doors.base import Door, DoorError, Value
+from pvlvrt_compliance.simulation.doors.library_door import LibraryDoor
+from pvlvrt_compliance.simulation.doors.library_file import SUFFIXES
 from pvlvrt_compliance.simulation.doors.python_door import PythonDoor
 
 
-def door_to(spec: str, given: Mapping[str, Value]) -> Door:
-    """Door to a controller; ``given`` are the parameters that the user has set.
+def door_to(spec: str, given: Mapping[str, Value], mapping: str | None = None) -> Door:
+    """Door to a controller; ``given`` are the parameters that the user has set, ``mapping`` names a mapping file.
 
     Raises
     ------
@@ -20,4 +22,6 @@ def door_to(spec: str, given: Mapping[str, Value]) -> Door:
         if not name or Path(spec).suffix == ".py":
             raise DoorError(f"name the class, too: {spec}:MyController")
         return PythonDoor(spec, given)
-    raise DoorError("not a kind of controller that is known; write FILE.py:CLASS")
+    if set(Path(spec).suffixes) & set(SUFFIXES):
+        return LibraryDoor(spec, given, mapping)
+    raise DoorError("not a kind of controller that is known; write FILE.py:CLASS or a shared library, libctrl.so")
