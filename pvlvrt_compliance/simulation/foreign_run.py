@@ -18,7 +18,7 @@ from pvlvrt_compliance.simulation.electronics import delay_lines_of, hardware_of
 from pvlvrt_compliance.simulation.foreign_loop import COMMANDS, RECORDED, SIGNALS, DoorTable, Timing, run_foreign
 from pvlvrt_compliance.simulation.loop import COMPLETED, NOT_FINITE, Outcome
 from pvlvrt_compliance.simulation.recorder import RecordingPlan, every_period
-from pvlvrt_compliance.simulation.sample_time import Rates, rates_of, with_rates
+from pvlvrt_compliance.simulation.sample_time import Rates, not_below, rates_of, with_rates
 from pvlvrt_compliance.simulation.translate import (
     Start,
     controller_params,
@@ -55,12 +55,12 @@ def timing_of(parameters: Parameters, rates: Rates) -> Timing:
     """When the controller begins to see and to act, in whole sample times."""
     simulation = parameters.simulation
     settling_s = simulation.settling_s if "settling_s" in simulation.model_fields_set else SETTLING_S
-    settling = math.ceil(settling_s / rates.sample_time_s)
+    settling = not_below(settling_s / rates.sample_time_s)
     return Timing(
         first=-settling * rates.periods,
         armed=-math.ceil((1 - _ARMED_AFTER) * settling) * rates.periods,
         ratio=rates.periods,
-        held=math.ceil(simulation.synchronising_s / rates.sample_time_s),
+        held=not_below(simulation.synchronising_s / rates.sample_time_s),
     )
 
 

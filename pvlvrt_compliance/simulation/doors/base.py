@@ -34,6 +34,8 @@ class Port:
         Signal that it is given, command that it gives, or the name it is recorded under; None: neither.
     width : int
         Numbers that it holds.
+    note : str
+        Why it is not mapped, where that needs saying.
     """
 
     name: str
@@ -41,6 +43,7 @@ class Port:
     description: str = ""
     mapped_to: str | None = None
     width: int = 1
+    note: str = ""
 
 
 @dataclass(frozen=True)

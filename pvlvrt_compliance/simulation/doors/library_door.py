@@ -23,12 +23,11 @@ from pvlvrt_compliance.simulation.doors.mapping import (
     Mapped,
     RawPort,
     check_commands,
-    load_mapping,
     map_inputs,
     map_outputs,
-    mapping_beside,
     set_constants,
 )
+from pvlvrt_compliance.simulation.doors.mapping_file import load_mapping, mapping_path
 from pvlvrt_compliance.simulation.native_call import FUNCTION
 from pvlvrt_compliance.units import Nominal
 
@@ -71,8 +70,7 @@ class LibraryDoor:
         self._info = _info(self._library, file)
         self._functions = _functions(self._library, file)
         self._settings = settings_of(self._info.parameters, dict(given))
-        beside = mapping_beside(file)
-        self._mapping = load_mapping(mapping if mapping is not None else beside)
+        self._mapping = load_mapping(mapping_path(spec, mapping))
         self._instance: LibraryInstance | None = None
         self._said = ""
         self._alive: tuple[Any, ...] = ()

@@ -21,6 +21,8 @@ def door_to(spec: str, given: Mapping[str, Value], mapping: str | None = None) -
     if Path(file).suffix == ".py" or Path(spec).suffix == ".py":
         if not name or Path(spec).suffix == ".py":
             raise DoorError(f"name the class, too: {spec}:MyController")
+        if mapping is not None:
+            raise DoorError("a Python class takes its measurements by their names; --mapping does not go with it")
         return PythonDoor(spec, given)
     if set(Path(spec).suffixes) & set(SUFFIXES):
         return LibraryDoor(spec, given, mapping)
