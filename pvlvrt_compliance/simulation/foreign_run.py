@@ -48,6 +48,7 @@ class ForeignRecord(NamedTuple):
 
     channels: tuple[str, ...]
     samples: NDArray[np.float64]
+    notes: tuple[str, ...] = ()  # what the controller had to say
 
 
 def timing_of(parameters: Parameters, rates: Rates) -> Timing:
@@ -116,7 +117,7 @@ def run_through(
             raise SimulationError(_explained(outcome, period_s, table, door.message()))
     finally:
         door.close()
-    return ForeignRecord((*RECORDED, *opened.recorded), samples)
+    return ForeignRecord((*RECORDED, *opened.recorded), samples, tuple(opened.notes))
 
 
 def _table(opened: DoorCall, nominal: Nominal, q_set_var: float) -> DoorTable:
@@ -132,7 +133,9 @@ def _table(opened: DoorCall, nominal: Nominal, q_set_var: float) -> DoorTable:
         signals[SIGNALS.index(name)] = value
     return DoorTable(
         address=opened.address,
+        first_address=opened.first_address,
         hold_address=opened.hold_address,
+        note_address=opened.note_address,
         argument=opened.argument,
         inputs=port_table(opened.inputs),
         outputs=port_table(opened.outputs),

@@ -44,6 +44,7 @@ class ForeignSimulator:
     def __init__(self, spec: str, given: Mapping[str, Value] | None = None, mapping: str | None = None) -> None:
         self.spec = spec
         self._given = dict(given or {})
+        self.notes: list[str] = []  # what the controller has said in its runs so far, each once
         self._mapping = mapping
         self.description = self._describe()
 
@@ -68,6 +69,7 @@ class ForeignSimulator:
             job = RunJob(self.spec, self._given, self._mapping, scenario=scenario, parameters=parameters, plan=in_periods)
             ended, arrays = do_apart(job, limit_s, keep=[RECORD])
             answer = _answer_of(ended)
+            self.notes += [note for note in answer["notes"] if note not in self.notes]
             return record_of(arrays[RECORD], plan, row_s, answer["channels"])
 
         return recorded(scenario, playback_table(scenario), row_s, make)
@@ -82,6 +84,7 @@ class ForeignSimulator:
             "controller_name": self.description.name,
             "controller_digest": self.description.digest,
             "controller_parameters": {p.name: self._given.get(p.name, p.value) for p in self.description.parameters},
+            "controller_notes": [*self.description.notes, *self.notes],
             **(_mapping_provenance(mapping) if mapping else {}),
             "controller_sample_time_s": self.description.sample_time_s,
             "plant_step_us": rates.plant_step_us,

@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from pvlvrt_compliance.simulation.doors.base import Door, DoorError, Value
+from pvlvrt_compliance.simulation.doors.library_door import LibraryDoor
+from pvlvrt_compliance.simulation.doors.library_file import SUFFIXES
 from pvlvrt_compliance.simulation.doors.python_door import PythonDoor
 
 
@@ -22,4 +24,6 @@ def door_to(spec: str, given: Mapping[str, Value], mapping: str | None = None) -
         if mapping is not None:
             raise DoorError("a Python class takes its measurements by their names; --mapping does not go with it")
         return PythonDoor(spec, given)
-    raise DoorError("not a kind of controller that is known; write FILE.py:CLASS")
+    if set(Path(spec).suffixes) & set(SUFFIXES):
+        return LibraryDoor(spec, given, mapping)
+    raise DoorError("not a kind of controller that is known; write FILE.py:CLASS or a shared library, libctrl.so")

@@ -136,4 +136,4 @@ def _answer(job: DescribeJob, folder: Path) -> dict[str, Any]:
         progress: Any = np.frombuffer(mmap.mmap(file.fileno(), 0), dtype=np.float64)
     record = run_through(door, job.scenario, job.parameters, job.plan, progress)
     np.save(folder / RECORD, record.samples)
-    return {"channels": record.channels}
+    return {"channels": record.channels, "notes": record.notes}
