@@ -1,5 +1,6 @@
 """Run the tests, show them, write the reports."""
 
+import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from datetime import datetime
@@ -67,6 +68,8 @@ def _own_controller(request: Request, job: Job) -> "ForeignSimulator | None":
 
     controller = ForeignSimulator(request.controller, job.given, request.mapping)
     controller.provenance(job.parameters)
+    for note in controller.notes:
+        print(f"pvlvrt-check: {request.controller}: {note}", file=sys.stderr)
     return controller
 
 

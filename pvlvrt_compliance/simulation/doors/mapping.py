@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,10 +25,7 @@ from pvlvrt_compliance.simulation.ports import REAL64
 from pvlvrt_compliance.units import Nominal
 
 __all__ = ["Constant", "Mapped", "MappingFile", "RawPort", "check_commands", "load_mapping", "map_inputs"]
-__all__ += ["map_outputs", "mapping_path", "set_constants"]
-
-SHOWN = ("v_fault_pu", "q_ref_var", "p_ref_w")
-"""Outputs that are recorded by their names alone: reports show them beside the measurements."""
+__all__ += ["map_outputs", "mapping_path", "missing_commands", "set_constants"]
 
 MODULATING, VOLTAGES = COMMANDS[:3], COMMANDS[3:]
 
@@ -236,7 +234,10 @@ _TARGETS = {"inputs": "signal", "outputs": "command"}
 
 
 def _guess_output(name: str, width: int) -> Guess:
-    return Guess((name,)) if name in SHOWN and width == 1 else guess_output(name, width)
+    """The command that an output means; of one that means none, the channel that it is recorded under: its own name."""
+    guess = guess_output(name, width)
+    free = name.isascii() and name.isidentifier() and name not in (*RECORDED, *COMMANDS, "t_s")
+    return Guess((name,)) if free and width == 1 and not guess.names and not guess.note else guess
 
 
 def _unknown_ports(side: _Side, mapping: MappingFile) -> Iterator[str]:
@@ -328,5 +329,14 @@ def _with_kind(mapped: Mapped, mapping: MappingFile) -> Mapped:
             "the outputs give modulating signals and voltages; write output_kind ="
             ' "modulating" or "voltage" at the top of a mapping file (--mapping)'
         )
-    wanted = VOLTAGES if in_volts else MODULATING
-    return mapped._replace(in_volts=in_volts, missing=tuple(name for name in wanted if name not in given))
+    return mapped._replace(in_volts=in_volts, missing=_missing(given, in_volts))
+
+
+def missing_commands(given: Iterable[str]) -> tuple[str, ...]:
+    """Commands that are missing among those given, of the kind that there is more of."""
+    given = set(given)
+    return min((_missing(given, in_volts) for in_volts in (False, True)), key=len)
+
+
+def _missing(given: AbstractSet[str], in_volts: bool) -> tuple[str, ...]:
+    return tuple(name for name in (VOLTAGES if in_volts else MODULATING) if name not in given)
