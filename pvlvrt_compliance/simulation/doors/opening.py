@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from pvlvrt_compliance.simulation.doors.base import Door, DoorError, Value
+from pvlvrt_compliance.simulation.doors.fmu_door import FmuDoor
 from pvlvrt_compliance.simulation.doors.python_door import PythonDoor
 
 
@@ -15,9 +16,11 @@ def door_to(spec: str, given: Mapping[str, Value]) -> Door:
     DoorError
         When no door fits, or there is nothing behind it.
     """
+    if Path(spec).suffix == ".fmu":
+        return FmuDoor(spec, given)
     file, _, name = spec.rpartition(":")
     if Path(file).suffix == ".py" or Path(spec).suffix == ".py":
         if not name or Path(spec).suffix == ".py":
             raise DoorError(f"name the class, too: {spec}:MyController")
         return PythonDoor(spec, given)
-    raise DoorError("not a kind of controller that is known; write FILE.py:CLASS")
+    raise DoorError("not a kind of controller that is known; write FILE.py:CLASS or FILE.fmu")
