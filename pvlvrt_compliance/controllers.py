@@ -53,8 +53,9 @@ class Controller(Protocol):
     Keyword arguments of the class that have defaults are its parameters; without any, its public attributes that are
     numbers, words or switches. A parameter keeps the type of its default.
 
-    It starts at rest and sees the steady state of normal operation at first (``enabled`` 0, `simulation.synchronising_s`
-    long), so that it can synchronise and set its regulators to what modulates (``m_a``, ``m_b``, ``m_c``).
+    It starts at rest and sees the steady state of normal operation at first (``enabled`` 0, as long as
+    `simulation.synchronising_s`): it can synchronise and set its regulators to what modulates (``m_a``, ``m_b``,
+    ``m_c``).
     """
 
     sample_time_s: float

@@ -65,7 +65,7 @@ def _own_controller(request: Request, job: Job) -> "ForeignSimulator | None":
         return None
     from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
 
-    controller = ForeignSimulator(request.controller, job.given)
+    controller = ForeignSimulator(request.controller, job.given, request.mapping)
     controller.provenance(job.parameters)
     return controller
 

@@ -18,7 +18,7 @@ from pvlvrt_compliance.simulation.electronics import delay_lines_of, hardware_of
 from pvlvrt_compliance.simulation.foreign_loop import COMMANDS, RECORDED, SIGNALS, DoorTable, Timing, run_foreign
 from pvlvrt_compliance.simulation.loop import COMPLETED, NOT_FINITE, Outcome
 from pvlvrt_compliance.simulation.recorder import RecordingPlan, every_period
-from pvlvrt_compliance.simulation.sample_time import Rates, rates_of, with_rates
+from pvlvrt_compliance.simulation.sample_time import Rates, not_below, rates_of, with_rates
 from pvlvrt_compliance.simulation.translate import (
     Start,
     controller_params,
@@ -48,18 +48,19 @@ class ForeignRecord(NamedTuple):
 
     channels: tuple[str, ...]
     samples: NDArray[np.float64]
+    notes: tuple[str, ...] = ()  # what the controller had to say
 
 
 def timing_of(parameters: Parameters, rates: Rates) -> Timing:
     """When the controller begins to see and to act, in whole sample times."""
     simulation = parameters.simulation
     settling_s = simulation.settling_s if "settling_s" in simulation.model_fields_set else SETTLING_S
-    settling = math.ceil(settling_s / rates.sample_time_s)
+    settling = not_below(settling_s / rates.sample_time_s)
     return Timing(
         first=-settling * rates.periods,
         armed=-math.ceil((1 - _ARMED_AFTER) * settling) * rates.periods,
         ratio=rates.periods,
-        held=math.ceil(simulation.synchronising_s / rates.sample_time_s),
+        held=not_below(simulation.synchronising_s / rates.sample_time_s),
     )
 
 
@@ -116,7 +117,7 @@ def run_through(
             raise SimulationError(_explained(outcome, period_s, table, door.message()))
     finally:
         door.close()
-    return ForeignRecord((*RECORDED, *opened.recorded), samples)
+    return ForeignRecord((*RECORDED, *opened.recorded), samples, tuple(opened.notes))
 
 
 def _table(opened: DoorCall, nominal: Nominal, q_set_var: float) -> DoorTable:
@@ -132,7 +133,9 @@ def _table(opened: DoorCall, nominal: Nominal, q_set_var: float) -> DoorTable:
         signals[SIGNALS.index(name)] = value
     return DoorTable(
         address=opened.address,
+        first_address=opened.first_address,
         hold_address=opened.hold_address,
+        note_address=opened.note_address,
         argument=opened.argument,
         inputs=port_table(opened.inputs),
         outputs=port_table(opened.outputs),

@@ -16,6 +16,7 @@ import sys
 import tempfile
 import threading
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -103,7 +104,8 @@ class Server:
 
     def _kill(self, pid: int) -> None:
         if FORKS:
-            os.killpg(pid, signal.SIGKILL)
+            with suppress(ProcessLookupError):  # it has just ended by itself
+                os.killpg(pid, signal.SIGKILL)
             self._line(None)
         else:
             self.end()

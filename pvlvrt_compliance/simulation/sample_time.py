@@ -50,10 +50,10 @@ def rates_of(sample_time_s: float, parameters: Parameters) -> Rates:
     if (fixed := _fixed_steps(sample_us, parameters.simulation)) is not None:
         steps = fixed
     elif switched:
-        carriers = _at_least(sample_us / _PERIOD_US)
-        steps = carriers * _at_least(sample_us / carriers / _DEFAULT_STEP_US)
+        carriers = not_below(sample_us / _PERIOD_US)
+        steps = carriers * not_below(sample_us / carriers / _DEFAULT_STEP_US)
     else:
-        steps = _at_least(sample_us / _DEFAULT_STEP_US)
+        steps = not_below(sample_us / _DEFAULT_STEP_US)
     plant_step_us = sample_us / steps
     if abs(plant_step_us - _DEFAULT_STEP_US) <= _SLACK * _DEFAULT_STEP_US:
         plant_step_us = _DEFAULT_STEP_US
@@ -75,9 +75,9 @@ def with_rates(parameters: Parameters, rates: Rates) -> Parameters:
     return parameters.model_copy(update={"simulation": simulation})
 
 
-def _at_least(ratio: float) -> int:
-    """Smallest whole number that is not below a ratio."""
-    return max(math.ceil(ratio * (1 - _SLACK)), 1)
+def not_below(ratio: float) -> int:
+    """Smallest whole number that is not below a ratio, but for rounding."""
+    return math.ceil(ratio * (1 - _SLACK))
 
 
 def _fixed_steps(sample_us: float, simulation: SimulationParameters) -> int | None:

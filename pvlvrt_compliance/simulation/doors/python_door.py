@@ -100,7 +100,7 @@ class PythonDoor:
         commands = _VOLTAGES if self._in_volts else _MODULATING
         further = range(len(COMMANDS), len(COMMANDS) + len(names))
         outputs = real_block([*(command_index(name) for name in commands), *further])
-        function = FUNCTION(self._caller(memoryview(inputs.memory), memoryview(outputs.memory).cast("d"), names))
+        function = FUNCTION(self._caller(inputs.memory.data, outputs.memory.data.cast("d"), names))
         self._alive = (function, inputs, outputs)
         return DoorCall(
             address=_address(function),
@@ -132,9 +132,10 @@ class PythonDoor:
             raise DoorError(f"signals(): {len(names)} are too many; {_MOST_SIGNALS} can be recorded")
         return names
 
-    def _caller(self, inputs: memoryview, outputs: memoryview, names: tuple[str, ...]) -> Callable[[Any], int]:
+    def _caller(self, inputs: Any, outputs: Any, names: tuple[str, ...]) -> Callable[[Any], int]:
         """Function that advances the controller by one sample; it gives 1 when that fails."""
-        step, signals = self._controller.step, getattr(self._controller, "signals", None)
+        controller = self._controller
+        step, signals = controller.step, controller.signals if names else None
         read = struct.Struct(f"{len(SIGNALS)}d").unpack_from
         new: Any = tuple.__new__
 
@@ -153,7 +154,7 @@ class PythonDoor:
             return 0
 
         def advance_and_ask(argument: Any) -> int:
-            if advance(argument):
+            if advance(argument) or signals is None:
                 return 1
             try:
                 said = signals()
@@ -225,10 +226,9 @@ def _checked(given: Mapping[str, Value], known: Mapping[str, Value]) -> dict[str
 def _as_default(name: str, value: Value, known: Mapping[str, Value]) -> Value:
     """Value of the type that the default has."""
     if name not in known:
-        has = f"; it has {', '.join(known)}" if known else "; it has none"
-        raise DoorError(
-            f"--set controller.{name}: the controller has no such parameter{did_you_mean(name, known)}{has}"
-        )
+        has = f"it has {', '.join(known)}" if known else "it has none"
+        near = did_you_mean(name, known)
+        raise DoorError(f"--set controller.{name}: the controller has no such parameter{near}; {has}")
     kind = type(known[name])
     if kind is float and isinstance(value, int) and not isinstance(value, bool):
         return float(value)
@@ -252,17 +252,12 @@ def _make(made: Any, given: Mapping[str, Value], keywords: bool) -> Any:
 
 def _sample_time_s(controller: Any) -> float:
     name = type(controller).__name__
-    if not hasattr(controller, "sample_time_s"):
+    given = getattr(controller, "sample_time_s", None)
+    if given is None:
         raise DoorError(f"{name} has no attribute sample_time_s")
-    try:
-        found = float(controller.sample_time_s)
-    except (TypeError, ValueError):
-        raise DoorError(
-            f"{name}.sample_time_s is {controller.sample_time_s!r}; it must be a number of seconds"
-        ) from None
-    if not (math.isfinite(found) and found > 0):
-        raise DoorError(f"{name}.sample_time_s is {found:g}; it must be a number of seconds above zero")
-    return found
+    if isinstance(given, (int, float)) and math.isfinite(given) and given > 0:
+        return float(given)
+    raise DoorError(f"{name}.sample_time_s is {reprlib.repr(given)}; it must be a number of seconds above zero")
 
 
 def _tail(error: BaseException) -> str:

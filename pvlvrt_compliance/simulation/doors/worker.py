@@ -8,10 +8,12 @@ import select
 import signal
 import sys
 import tempfile
+import traceback
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, NoReturn
 
 import numpy as np
 
@@ -30,6 +32,7 @@ class DescribeJob:
 
     spec: str
     given: Mapping[str, Value] = field(default_factory=dict)
+    mapping: str | None = None  # file
     beside: str = field(default_factory=os.getcwd)  # folder that relative names in ``spec`` start from
 
 
@@ -74,29 +77,37 @@ def _fork(folder: Path, jobs: IO[str], answers: IO[str]) -> None:
         os.setpgid(0, 0)
         os.close(jobs.fileno())
         os.close(answers.fileno())
-        _do(folder)
-        os._exit(0)
-    with_suppressed_race(pid)
+        _do_and_exit(folder)
+    _make_group(pid)
     _say(answers, f"started {pid}")
     ended = os.pidfd_open(pid)
     try:
-        while ended not in (found := select.select([ended, jobs], [], [])[0]):
-            if found:  # the other side has gone: nobody sends a job before it has heard of the last
-                os.killpg(pid, signal.SIGKILL)
-                select.select([ended], [], [])
-                break
+        found, _, _ = select.select([ended, jobs.fileno()], [], [])
+        if ended not in found:  # the other side has gone: nobody sends a job before it has heard of the last
+            os.killpg(pid, signal.SIGKILL)
         _, status = os.waitpid(pid, 0)
     finally:
         os.close(ended)
+        with suppress(OSError):
+            os.killpg(pid, signal.SIGKILL)  # what the controller has started ends with it
     _say(answers, f"ended {os.waitstatus_to_exitcode(status)}")
 
 
-def with_suppressed_race(pid: int) -> None:
+def _make_group(pid: int) -> None:
     """Make the group of a copy before it is named to anybody; the copy does the same, whoever comes first."""
-    try:
+    with suppress(OSError):
         os.setpgid(pid, pid)
-    except OSError:
-        return
+
+
+def _do_and_exit(folder: Path) -> NoReturn:
+    """Do a job and end, whatever happens: a copy must never come back to the server's own loop."""
+    try:
+        _do(folder)
+    except BaseException:
+        traceback.print_exc()
+        sys.stderr.flush()
+        os._exit(1)
+    os._exit(0)
 
 
 def _do(folder: Path) -> None:
@@ -118,7 +129,7 @@ def _do(folder: Path) -> None:
 
 
 def _answer(job: DescribeJob, folder: Path) -> dict[str, Any]:
-    door = door_to(job.spec, job.given)
+    door = door_to(job.spec, job.given, job.mapping)
     try:
         return _use(door, job, folder)
     finally:
@@ -134,4 +145,4 @@ def _use(door: Door, job: DescribeJob, folder: Path) -> dict[str, Any]:
         progress: Any = np.frombuffer(mmap.mmap(file.fileno(), 0), dtype=np.float64)
     record = run_through(door, job.scenario, job.parameters, job.plan, progress)
     np.save(folder / RECORD, record.samples)
-    return {"channels": record.channels}
+    return {"channels": record.channels, "notes": record.notes}

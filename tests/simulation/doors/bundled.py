@@ -39,7 +39,7 @@ class Bundled:
 
     sample_time_s = control_period_s(Parameters())
 
-    def reset(self, nominal):
+    def reset(self, nominal):  # noqa: ARG002 - the protocol's
         """Take the steady state that the bundled simulation starts from."""
         scenario, parameters = Scenario(sag=Sag(depth=0.9), duration_s=0.309), Parameters()
         plant, tables = plant_params(parameters, scenario), plant_tables(parameters, scenario)

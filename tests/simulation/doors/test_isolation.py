@@ -1,0 +1,162 @@
+"""A bad controller costs its own run and no more; what went wrong, and when, is told."""
+
+import os
+import time
+
+import pytest
+
+from pvlvrt_compliance.errors import SimulationError, UsageError
+from pvlvrt_compliance.scenario.parameters import parameters_from
+from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.scenario.scenario import Scenario
+
+SCENARIO = Scenario(sag=Sag(depth=0.0), duration_s=0.1, after_s=0.1)
+QUICK = parameters_from(("simulation.settling_s=0.2", "simulation.time_limit_s=2"))
+
+WHEN = "0.1000 s"
+"""Simulated time of a deed at 0.5 s of the controller's, 0.4 s before the record."""
+
+
+@pytest.mark.parametrize(
+    ("deed", "reason"),
+    [
+        ("raise", "the controller failed at"),
+        ("nan", "a command of the controller is not a finite number at"),
+        ("range", "a command of the controller is out of range at"),
+        ("two", "step() must return three numbers, not (1.0, 2.0)"),
+        ("none", "step() must return three numbers, not None"),
+        ("words", "step() must return three numbers"),
+        ("exit", "the controller ended the process (status 0) at"),
+        ("sys.exit", "SystemExit: 3"),
+        ("crash", "the controller crashed (SIGSEGV) at"),
+        ("loop", "the controller was stopped after 2 s of computing (simulation.time_limit_s) at"),
+        ("orphan", "the controller ended the process (status 5) at"),
+    ],
+)
+def test_bad_deed_is_told_with_its_time(opened, deed, reason):
+    """The message has the reason, the simulated time, and what the controller had printed; the next run is fine."""
+    simulator = opened("misbehaving.py:Controller", deed=deed)
+    with pytest.raises(SimulationError) as error:
+        simulator(SCENARIO, QUICK)
+    assert reason in str(error.value)
+    assert WHEN in str(error.value)
+    assert f"about to {deed}" in str(error.value)
+    assert opened("misbehaving.py:Controller")(SCENARIO, QUICK).end_s > 0.4
+
+
+def test_exception_comes_with_the_line(opened):
+    """The author finds the line that has failed."""
+    with pytest.raises(SimulationError, match=r"KeyError: 'gain'\n .*misbehaving.py, line \d+, in s"):
+        opened("misbehaving.py:Controller", deed="raise")(SCENARIO, QUICK)
+
+
+def test_instances_never_share_globals(opened):
+    """Every run begins with a module of its own."""
+    for _ in range(2):
+        (segment,) = opened("misbehaving.py:Controller")(SCENARIO, QUICK)
+        assert set(segment["count"]) == {1.0}
+
+
+def test_printing_reaches_nobody(opened, capfd):
+    """What a controller prints stays out of the output of the command."""
+    opened("misbehaving.py:Controller", say=True)(SCENARIO, QUICK)
+    assert capfd.readouterr() == ("", "")
+
+
+FILES = {
+    "no_class.py": "class Other: pass\n",
+    "no_time.py": "class C:\n    def reset(self, n): pass\n    def step(self, y): return (0, 0, 0)\n",
+    "bad_time.py": "class C:\n    sample_time_s = 'fast'\n    def reset(self, n): pass\n    def step(self, y): pass\n",
+    "no_step.py": "class C:\n    sample_time_s = 1e-4\n    def reset(self, n): pass\n",
+    "broken.py": "import nothing_of_that_name\n",
+    "leaves.py": "import os\nprint('going')\nos._exit(4)\n",
+    "crashes.py": "import ctypes\nctypes.string_at(0)\n",
+    "strict.py": "class C:\n    sample_time_s = 1e-4\n    def __init__(self, gain): pass\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("spec", "words"),
+    [
+        ("absent.py:C", "there is no file"),
+        ("no_class.py:Othr", "has no class 'Othr'; did you mean \"Other\"?"),
+        ("no_class.py", "name the class, too: "),
+        ("no_time.py:C", "C has no attribute sample_time_s"),
+        ("bad_time.py:C", "C.sample_time_s is 'fast'; it must be a number of seconds above zero"),
+        ("no_step.py:C", "C has no method step()"),
+        ("broken.py:C", "No module named 'nothing_of_that_name'\n  broken.py, line 1"),
+        ("leaves.py:C", "the controller ended the process (status 4)\nit had printed: going"),
+        ("crashes.py:C", "the controller crashed (SIGSEGV)"),
+        ("strict.py:C", "missing 1 required positional argument: 'gain'"),
+        ("what.ever", "not a kind of controller that is known"),
+    ],
+)
+def test_what_cannot_be_opened_is_refused(tmp_path, monkeypatch, spec, words):
+    """Before anything runs, with the reason."""
+    from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
+
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(UsageError) as error:
+        ForeignSimulator(spec)
+    assert str(error.value).startswith(f"--controller {spec}: ")
+    assert words in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"ded": "raise"}, '"deed"?; it has sample_time_s, deed, at_s, say'),
+        ({"at_s": "soon"}, "--set controller.at_s: 'soon' is not a number"),
+        ({"say": 1}, "--set controller.say: 1 is not true or false"),
+    ],
+)
+def test_parameters_are_checked_by_their_defaults(opened, given, words):
+    """A name or a value that does not fit is refused with those that do."""
+    with pytest.raises(UsageError) as error:
+        opened("misbehaving.py:Controller", **given)
+    assert words in str(error.value)
+
+
+def test_parameters_without_a_constructor_are_attributes(tmp_path):
+    """A class without keywords of its own has its public attributes for parameters."""
+    from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
+
+    (tmp_path / "c.py").write_text(
+        "class C:\n    sample_time_s = 1e-4\n    gain = 2\n    def reset(self, n): pass\n    def step(self, y): pass\n"
+    )
+    simulator = ForeignSimulator(f"{tmp_path / 'c.py'}:C", {"sample_time_s": 2e-4})
+    assert simulator.description.sample_time_s == 2e-4
+    assert [p.name for p in simulator.description.parameters] == ["gain", "sample_time_s"]
+
+
+def test_nothing_is_left_behind(opened, tmp_path, monkeypatch):
+    """Files of a run are gone after it, and so is the process that it ran in."""
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr("tempfile.tempdir", None)
+    opened("misbehaving.py:Controller")(SCENARIO, QUICK)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_server_ends_with_its_reader():
+    """A process for controllers does not outlive the one that started it, not even in an endless loop."""
+    import subprocess
+    import sys
+    from pathlib import Path
+
+    code = (
+        "import os\n"
+        "from pvlvrt_compliance.simulation import isolation\n"
+        "from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator\n"
+        f"ForeignSimulator({str(Path(__file__).parent / 'misbehaving.py:Controller')!r})\n"
+        "print(isolation._server._process.pid, flush=True)\n"
+        "os._exit(0)\n"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=True)
+    pid = int(run.stdout)
+    for _ in range(100):
+        if not os.path.exists(f"/proc/{pid}"):  # noqa: PTH110
+            return
+        time.sleep(0.05)
+    pytest.fail("it is still there")
