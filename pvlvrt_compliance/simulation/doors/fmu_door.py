@@ -10,11 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from pvlvrt_compliance.simulation.doors.base import Block, Description, DoorCall, DoorError, Setting, Value
-from pvlvrt_compliance.simulation.doors.by_name import inputs_by_name, outputs_by_name
 from pvlvrt_compliance.simulation.doors.fmu_instance import Fmu, laid_out
 from pvlvrt_compliance.simulation.doors.fmu_model import read_model
 from pvlvrt_compliance.simulation.doors.given import checked_parameters, seconds
+from pvlvrt_compliance.simulation.doors.mapping import Mapped, check_commands, map_inputs, map_outputs, set_constants
+from pvlvrt_compliance.simulation.doors.mapping_file import load_mapping, mapping_path
 from pvlvrt_compliance.simulation.native_call import FUNCTION
+from pvlvrt_compliance.units import Nominal
 
 SAMPLE_TIME = "sample_time_s"
 """Parameter that every FMU takes here besides its own."""
@@ -29,6 +31,8 @@ class FmuDoor:
         Its file.
     given : mapping
         Parameters that the user has set; ``sample_time_s`` is not the FMU's but how often it is stepped.
+    mapping : str, optional
+        Mapping file; by default ``<stem>.mapping.toml`` beside the FMU, if there is one.
 
     Raises
     ------
@@ -36,7 +40,7 @@ class FmuDoor:
         When there is no such file, it cannot be used here, or what is given does not fit it.
     """
 
-    def __init__(self, spec: str, given: Mapping[str, Value]) -> None:
+    def __init__(self, spec: str, given: Mapping[str, Value], mapping: str | None = None) -> None:
         self._file = Path(spec)
         if not self._file.is_file():
             raise DoorError(f"there is no file {self._file}")
@@ -45,39 +49,43 @@ class FmuDoor:
         self._given = checked_parameters(own, (p.info for p in self._model.parameters))
         self._sample_time_s = seconds(given, SAMPLE_TIME) or self._proposed_sample_time_s()
         self._inputs, self._outputs = laid_out(self._model.inputs), laid_out(self._model.outputs)
-        self._tied_in, self._tied_out = inputs_by_name(self._inputs.raw), outputs_by_name(self._outputs.raw)
+        self._mapping = load_mapping(mapping_path(spec, mapping))
         self._fmu: Fmu | None = None
         self._resources = ExitStack()
 
     def describe(self) -> Description:
         """Model, ports and parameters by its modelDescription.xml."""
+        inputs, outputs = self._mapped(Nominal())
         return Description(
             kind=f"fmi{self._model.version}",
             name=self._model.name,
             digest=hashlib.sha256(self._file.read_bytes()).hexdigest(),
             sample_time_s=self._sample_time_s,
-            inputs=self._tied_in.ports,
-            outputs=self._tied_out.ports,
+            inputs=inputs.ports,
+            outputs=outputs.ports,
             parameters=tuple(p.info for p in self._model.parameters),
         )
 
     def open(self, setting: Setting) -> DoorCall:
         """Unpack, load and initialise it; make the function that the loop calls."""
-        del setting
+        inputs, outputs = self._mapped(setting.nominal)
+        check_commands(outputs)
         folder = self._resources.enter_context(tempfile.TemporaryDirectory(prefix="fmu-", ignore_cleanup_errors=True))
         _unpack(self._file, Path(folder))
-        self._fmu = Fmu(self._model, Path(folder))
+        fmu = self._fmu = Fmu(self._model, Path(folder))
         parameters = [(p, self._given[p.info.name]) for p in self._model.parameters if p.info.name in self._given]
-        self._fmu.start(parameters, self._inputs)
-        function = FUNCTION(self._fmu.stepping(self._sample_time_s, self._inputs, self._outputs))
+        fmu.start(parameters, self._inputs)
+        set_constants(self._inputs.memory, inputs.constants)
+        function = FUNCTION(fmu.stepping(self._sample_time_s, self._inputs, self._outputs))
         self._alive: Any = function
         return DoorCall(
             address=int(ctypes.cast(function, ctypes.c_void_p).value or 0),
             argument=0,
-            inputs=Block(self._inputs.memory, self._tied_in.elements),
-            outputs=Block(self._outputs.memory, self._tied_out.elements),
-            in_volts=self._tied_out.in_volts,
-            recorded=self._tied_out.recorded,
+            inputs=Block(self._inputs.memory, inputs.elements),
+            outputs=Block(self._outputs.memory, outputs.elements),
+            in_volts=outputs.in_volts,
+            recorded=outputs.recorded,
+            notes=fmu.notes,
         )
 
     def message(self) -> str:
@@ -92,6 +100,12 @@ class FmuDoor:
                 fmu.end()
         finally:
             self._resources.close()
+
+    def _mapped(self, nominal: Nominal) -> tuple[Mapped, Mapped]:
+        return (
+            map_inputs(self._inputs.raw, self._mapping, nominal),
+            map_outputs(self._outputs.raw, self._mapping, nominal),
+        )
 
     def _proposed_sample_time_s(self) -> float:
         found = self._model.sample_time_s

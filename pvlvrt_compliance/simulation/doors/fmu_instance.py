@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.simulation.doors.base import ITEM_SIZES, DoorError, Value, block_memory
-from pvlvrt_compliance.simulation.doors.by_name import RawPort
 from pvlvrt_compliance.simulation.doors.fmu_model import FmuModel, FmuParameter, Variable, fmi_library
+from pvlvrt_compliance.simulation.doors.mapping import RawPort
 
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING, TERMINATED = range(7)
 """What a function of FMI gives; the last is none of FMI's: a step was done, and is to be the last."""
@@ -30,6 +30,7 @@ _NUMBERS: Mapping[str, Any] = {
     "UInt32": ctypes.c_uint32,
 }
 _LOG_LINES = 6
+_MOST_NOTES = 20
 _TERMINATED_KIND = 3  # fmi2Terminated
 
 Call = tuple[Callable[..., int], tuple[Any, ...]]
@@ -65,7 +66,8 @@ class Fmu:
 
     def __init__(self, model: FmuModel, folder: Path) -> None:
         self._log: deque[str] = deque(maxlen=_LOG_LINES)
-        self._status = OK
+        self.notes: list[str] = []
+        self._status, self._why = OK, ""
         self._version = model.version
         self._prefix = f"fmi{model.version}"
         library = fmi_library()
@@ -115,8 +117,10 @@ class Fmu:
             count += 1
             for function, arguments in calls:
                 if status := function(*arguments):
-                    self._ended(function, status)
-                    return 1
+                    if status != WARNING:
+                        self._ended(function, status)
+                        return 1
+                    self._warned(function)
             return 0
 
         return advance
@@ -132,8 +136,6 @@ class Fmu:
     def message(self) -> str:
         """Why its last step was not done, with what it has logged."""
         return self._with_log(self._why)
-
-    _why = ""
 
     def end(self) -> None:
         """Let go of the instance; an FMU that has failed is not asked for anything more than FMI allows."""
@@ -205,10 +207,14 @@ class Fmu:
 
         return do_step
 
+    def _warned(self, function: Any) -> None:
+        said = self._log[-1] if self._log else f"{_name(function, self._prefix)} gave a warning"
+        if said not in self.notes and len(self.notes) < _MOST_NOTES:
+            self.notes.append(said)
+
     def _ended(self, function: Any, status: int) -> None:
         self._status = status
-        name = getattr(function, "__name__", "")
-        name = name if name.startswith("fmi") else f"{self._prefix}DoStep"
+        name = _name(function, self._prefix)
         asks = "the FMU asks for the end of the simulation"
         if status == TERMINATED or (status == DISCARD and self._version == "2" and self._asks_for_the_end()):
             self._why = asks
@@ -224,3 +230,9 @@ class Fmu:
 
     def _with_log(self, text: str) -> str:
         return "\n".join([text, *(f"  {line}" for line in self._log)])
+
+
+def _name(function: Any, prefix: str) -> str:
+    """Name of a function of FMI; the step is wrapped in one of Python."""
+    name = str(getattr(function, "__name__", ""))
+    return name if name.startswith(prefix) else f"{prefix}DoStep"

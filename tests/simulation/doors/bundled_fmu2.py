@@ -28,16 +28,14 @@ class BundledFmu(Fmi2Slave):
             setattr(self, name, 0.0)
             self.register_variable(Real(name, causality=Fmi2Causality.output))
         self.share = 1.0
-        self.register_variable(
-            Real("share", causality=Fmi2Causality.parameter, variability=Fmi2Variability.tunable)
-        )
+        self.register_variable(Real("share", causality=Fmi2Causality.parameter, variability=Fmi2Variability.tunable))
         self.controller = Bundled()
 
     def exit_initialization_mode(self):
         """Start anew."""
         self.controller.reset(None)
 
-    def do_step(self, current_time, step_size):
+    def do_step(self, current_time, step_size):  # noqa: ARG002 (names are those of pythonfmu)
         """Advance by one sample."""
         m = self.controller.step(self)
         self.m_a, self.m_b, self.m_c = (self.share * x for x in m)
