@@ -50,7 +50,7 @@ class MyController(Fmi2Slave):
         tunable = Fmi2Variability.tunable if causality == Fmi2Causality.parameter else Fmi2Variability.continuous
         self.register_variable(Real(name, causality=causality, variability=tunable, description=description))
 
-    def do_step(self, current_time, step_size):
+    def do_step(self, current_time, step_size):  # noqa: ARG002 - names that pythonfmu wants
         """Advance by one sample; with the first one the rating is known."""
         if self.controller is None:
             self.controller = Controller(**{name: getattr(self, name) for name in self.parameters})
