@@ -86,7 +86,7 @@ def _words(found: dict[str, Any]) -> Iterator[str]:
         f"  sample time {1e6 * found['sample_time_s']:g} us: plant step {found['plant_step_us']:g} us,"
         f" {found['plant_steps_per_sample']} steps in a sample time; recorded every {found['recorded_every_us']:g} us"
     )
-    yield f"  computation delay {found['computation_delay_samples']} (in sample times, from a sample to when its command acts)"
+    yield f"  computation delay {found['computation_delay_samples']} sample time(s)"
     yield from _table("input", ("unit", "is given", "description"), map(_port_row, found["inputs"]))
     yield from _table("output", ("unit", "gives", "description"), map(_port_row, found["outputs"]))
     headings = ("value", "unit", "allowed", "description")
