@@ -253,7 +253,18 @@ class Twin:
         (folder / "layout.h").write_text(plant_layout(), encoding="utf-8")
         library = folder / "twin.so"
         subprocess.run(
-            [gcc, *_FLAGS, "-I", str(CONTROLLER), "-I", str(folder), str(_FOLDER / "twin.c"), "-o", str(library), "-lm"],
+            [
+                gcc,
+                *_FLAGS,
+                "-I",
+                str(CONTROLLER),
+                "-I",
+                str(folder),
+                str(_FOLDER / "twin.c"),
+                "-o",
+                str(library),
+                "-lm",
+            ],
             check=True,
         )
         self._run = ctypes.CDLL(str(library)).run

@@ -66,7 +66,9 @@ class ForeignSimulator:
 
         def make(plan: RecordingPlan) -> Waveforms:
             in_periods = RecordingPlan(first=rates.thinning * plan.first, step=rates.thinning * plan.step)
-            job = RunJob(self.spec, self._given, self._mapping, scenario=scenario, parameters=parameters, plan=in_periods)
+            job = RunJob(
+                self.spec, self._given, self._mapping, scenario=scenario, parameters=parameters, plan=in_periods
+            )
             ended, arrays = do_apart(job, limit_s, keep=[RECORD])
             answer = _answer_of(ended)
             self.notes += [note for note in answer["notes"] if note not in self.notes]

@@ -1,6 +1,4 @@
 /* A controller that goes on with what modulates, and at a time of its choice does something that none should do.
- *
- * -DWITHOUT_X leaves function Model_X out.
  */
 #include <math.h>
 #include <stdio.h>
@@ -91,9 +89,7 @@ static int32_T misbehave(IEEE_Cigre_DLLInterface_Instance *instance, Outputs *ou
     return IEEE_Cigre_DLLInterface_Return_OK;
 }
 
-#ifndef WITHOUT_GetInfo
 const IEEE_Cigre_DLLInterface_Model_Info *Model_GetInfo(void) { return &info; }
-#endif
 
 int32_T Model_PrintInfo(void)
 {
@@ -111,15 +107,12 @@ int32_T Model_CheckParameters(IEEE_Cigre_DLLInterface_Instance *instance)
     return IEEE_Cigre_DLLInterface_Return_OK;
 }
 
-#ifndef WITHOUT_Initialize
 int32_T Model_Initialize(IEEE_Cigre_DLLInterface_Instance *instance)
 {
     (void)instance;
     return IEEE_Cigre_DLLInterface_Return_OK;
 }
-#endif
 
-#ifndef WITHOUT_Outputs
 int32_T Model_Outputs(IEEE_Cigre_DLLInterface_Instance *instance)
 {
     const Inputs *in = instance->ExternalInputs;
@@ -136,12 +129,9 @@ int32_T Model_Outputs(IEEE_Cigre_DLLInterface_Instance *instance)
         return IEEE_Cigre_DLLInterface_Return_OK;
     return misbehave(instance, out, p->how);
 }
-#endif
 
-#ifndef WITHOUT_Terminate
 int32_T Model_Terminate(IEEE_Cigre_DLLInterface_Instance *instance)
 {
     (void)instance;
     return IEEE_Cigre_DLLInterface_Return_OK;
 }
-#endif

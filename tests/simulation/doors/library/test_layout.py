@@ -84,7 +84,9 @@ def test_parts_of_the_memory_begin_aligned():
 def test_header_compiles_alone(gcc, header, tmp_path, language):
     """The header is valid C99 and C++, included twice, without a warning."""
     source = tmp_path / "twice.txt"
-    source.write_text('#include "ieee_cigre.h"\n#include "ieee_cigre.h"\nint main(void) { return Model_PrintInfo(); }\n')
+    source.write_text(
+        '#include "ieee_cigre.h"\n#include "ieee_cigre.h"\nint main(void) { return Model_PrintInfo(); }\n'
+    )
     standard = "c99" if language == "c" else "c++11"
     command = [gcc, "-x", language, f"-std={standard}", "-Wall", "-Wextra", "-pedantic", "-Werror", "-fsyntax-only"]
     try:
