@@ -1,6 +1,7 @@
 """Ports tied to the plant: by name, by mapping file, in the port's own unit."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -301,3 +302,17 @@ def test_no_mapping_file_is_none():
     assert load_mapping(None) is None
     with pytest.raises(DoorError, match="cannot be read"):
         load_mapping("absent.toml")
+
+
+def test_example_on_the_page_is_a_mapping_file(tmp_path):
+    """The file that the documentation shows is one, for a controller with its ports."""
+    page = (Path(__file__).parents[3] / "docs" / "controllers.md").read_text("utf-8")
+    file = tmp_path / "page.mapping.toml"
+    file.write_text(page.partition("```toml\n")[2].partition("```")[0], "utf-8")
+    names = ["Va", "Vdc", "Vdc_pu", "Ia", "Ipv", "Vref"]
+    inputs = [*(port(name) for name in names), port("V_abc", width=3), port("y", width=4)]
+    mapped = map_inputs(inputs, load_mapping(file), NOMINAL)
+    assert mapped.unmapped == ("y[0]", "y[1]", "y[2]")
+    assert map_outputs([port("ma"), port("Ea"), port("Pout", "W")], load_mapping(file), NOMINAL).recorded == (
+        "p_out_w",
+    )
