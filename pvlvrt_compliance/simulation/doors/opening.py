@@ -4,8 +4,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from pvlvrt_compliance.simulation.doors.base import Door, DoorError, Value
+from pvlvrt_compliance.simulation.doors.fmu_door import FmuDoor
 from pvlvrt_compliance.simulation.doors.library_door import LibraryDoor
 from pvlvrt_compliance.simulation.doors.library_file import SUFFIXES
+from pvlvrt_compliance.simulation.doors.program_door import SCHEMES, ProgramDoor
 from pvlvrt_compliance.simulation.doors.python_door import PythonDoor
 
 
@@ -17,6 +19,8 @@ def door_to(spec: str, given: Mapping[str, Value], mapping: str | None = None) -
     DoorError
         When no door fits, or there is nothing behind it.
     """
+    if spec.startswith(SCHEMES):
+        return ProgramDoor(spec, given, mapping)
     file, _, name = spec.rpartition(":")
     if Path(file).suffix == ".py" or Path(spec).suffix == ".py":
         if not name or Path(spec).suffix == ".py":
@@ -24,6 +28,10 @@ def door_to(spec: str, given: Mapping[str, Value], mapping: str | None = None) -
         if mapping is not None:
             raise DoorError("a Python class takes its measurements by their names; --mapping does not go with it")
         return PythonDoor(spec, given)
+    if Path(spec).suffix == ".fmu":
+        return FmuDoor(spec, given, mapping)
     if set(Path(spec).suffixes) & set(SUFFIXES):
         return LibraryDoor(spec, given, mapping)
-    raise DoorError("not a kind of controller that is known; write FILE.py:CLASS or a shared library, libctrl.so")
+    raise DoorError(
+        "not a kind of controller that is known; write FILE.py:CLASS, a shared library (libctrl.so) or FILE.fmu"
+    )

@@ -7,6 +7,7 @@ import pickle
 import select
 import signal
 import sys
+import tempfile
 import traceback
 from collections.abc import Mapping
 from contextlib import suppress
@@ -19,7 +20,7 @@ import numpy as np
 from pvlvrt_compliance.errors import PvlvrtError, SimulationError
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
-from pvlvrt_compliance.simulation.doors.base import Value
+from pvlvrt_compliance.simulation.doors.base import Door, Value
 from pvlvrt_compliance.simulation.doors.opening import door_to
 from pvlvrt_compliance.simulation.isolation import ANSWER, FORKS, JOB, PROGRESS, RECORD, SAID
 from pvlvrt_compliance.simulation.recorder import RecordingPlan
@@ -115,6 +116,7 @@ def _do(folder: Path) -> None:
     os.dup2(said, 2)
     job = pickle.loads((folder / JOB).read_bytes())
     os.chdir(job.beside)
+    tempfile.tempdir = str(folder)  # removed with the job, however it ends
     try:
         answer = _answer(job, folder)
     except PvlvrtError as error:
@@ -128,6 +130,13 @@ def _do(folder: Path) -> None:
 
 def _answer(job: DescribeJob, folder: Path) -> dict[str, Any]:
     door = door_to(job.spec, job.given, job.mapping)
+    try:
+        return _use(door, job, folder)
+    finally:
+        door.close()
+
+
+def _use(door: Door, job: DescribeJob, folder: Path) -> dict[str, Any]:
     if not isinstance(job, RunJob):
         return {"description": door.describe().to_json()}
     from pvlvrt_compliance.simulation.foreign_run import run_through
