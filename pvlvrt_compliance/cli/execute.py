@@ -38,6 +38,7 @@ _INTERRUPTED_STATUS = 130
 def execute(request: Request, job: Job) -> int:
     """Run what was asked for and return the exit status."""
     controller = _own_controller(request, job)
+    told = len(controller.notes) if controller else 0
     run = _Run(request, job, created_at(), OutputFolder(request.output), controller)
     try:
         run.simulate()
@@ -49,6 +50,7 @@ def execute(request: Request, job: Job) -> int:
     except BaseException:
         run.output.discard()
         raise
+    _tell(controller.notes[told:] if controller else (), request)
     with suppress(SystemExit):  # rich ends the program when the reader of stdout has gone; the verdict still stands
         _show(results, request)
     return 0 if request.exit_zero else EXIT_STATUS[results.status]
@@ -68,9 +70,14 @@ def _own_controller(request: Request, job: Job) -> "ForeignSimulator | None":
 
     controller = ForeignSimulator(request.controller, job.given, request.mapping)
     controller.provenance(job.parameters)
-    for note in controller.notes:
-        print(f"pvlvrt-check: {request.controller}: {note}", file=sys.stderr)
+    _tell(controller.notes, request)
     return controller
+
+
+def _tell(notes: Iterable[str], request: Request) -> None:
+    """Say what there is to know of the user's own controller, or what it has said itself."""
+    for note in notes:
+        print(f"pvlvrt-check: {request.controller}: {note}", file=sys.stderr)
 
 
 class _Run:

@@ -147,7 +147,8 @@ def is_well(door: DoorTable, address: int) -> bool:
     answer = call_address(address, door.argument)
     if answer == _MESSAGE and door.note_address != 0:
         answer = call_address(door.note_address, door.argument)
-    return answer == 0
+    well: bool = answer == 0
+    return well
 
 
 @kernel

@@ -100,7 +100,7 @@ def run_through(
     nominal = nominal_of(parameters, scenario)
     opened = door.open(Setting(nominal, start.plant.v_dc))
     try:
-        table = _table(opened, nominal, controller.lvrt.Q_set)
+        table = door_table(opened, nominal, controller.lvrt.Q_set)
         samples = np.empty((sum(plan.rows), len(RECORDED) + len(opened.recorded)))
         outcome = run_foreign(
             start.plant,
@@ -122,7 +122,8 @@ def run_through(
     return ForeignRecord((*RECORDED, *opened.recorded), samples, tuple(opened.notes))
 
 
-def _table(opened: DoorCall, nominal: Nominal, q_set_var: float) -> DoorTable:
+def door_table(opened: DoorCall, nominal: Nominal, q_set_var: float) -> DoorTable:
+    """An open door as the loop has it, for an inverter of this rating and this set-point of reactive power (var)."""
     signals = np.zeros(len(SIGNALS))
     constant = {
         "p_set_w": nominal.apparent_power_va,
@@ -178,7 +179,7 @@ def warm_up() -> None:
 def _run_nothing(  # type: ignore[no-untyped-def]
     start: Start, opened: DoorCall, plan: RecordingPlan, timing: Timing, plant, tables: PlantTables
 ) -> None:
-    table = _table(opened, Nominal(), 0.0)
+    table = door_table(opened, Nominal(), 0.0)
     lines = delay_lines_of(Parameters(), start)
     run_foreign(
         start.plant, start.m, timing, plant, tables, None, lines, table, plan, np.empty((0, len(RECORDED))), np.zeros(1)

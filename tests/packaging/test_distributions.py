@@ -13,7 +13,13 @@ import pytest
 from pvlvrt_compliance.resources import resource_folder
 
 _NAME = "pvlvrt_compliance"
+_BUILT = {".so", ".o"}
 _LEFT_BY_TOOLS = {"__pycache__", "build", ".pytest_cache", ".hypothesis"}
+
+
+def _is_left(path):
+    """Whether a tool has left this file behind."""
+    return path.suffix in _BUILT or bool(_LEFT_BY_TOOLS & set(path.parts))
 
 
 def _call(*command, cwd):
@@ -63,6 +69,7 @@ def test_wheel_has_every_source_profile_and_template(root, wheel_files):
     sources = {p.relative_to(root).as_posix(): p for p in (root / _NAME).rglob("*.py")}
     sources |= {f"{_NAME}/{p.relative_to(root).as_posix()}": p for p in (root / "profiles").glob("*.toml")}
     sources |= {f"{_NAME}/{p.relative_to(root).as_posix()}": p for p in (root / "reports").iterdir() if p.is_file()}
+    sources |= {p.relative_to(root).as_posix(): p for p in (root / _NAME).rglob("*.h")}
     sources |= {f"{_NAME}/{p.relative_to(root).as_posix()}": p for p in _templates(root)}
     sources[f"{_NAME}/py.typed"] = root / _NAME / "py.typed"
     assert {name for name in sources if name not in wheel_files} == set()
@@ -87,10 +94,10 @@ def test_sdist_can_be_tested(root, sdist_files):
     """The sdist carries tests and benchmarks besides what the wheel is made from."""
     wanted = [
         p
-        for folder in ("tests", "profiles", "reports", "templates", "benchmarks")
+        for folder in ("tests", "profiles", "reports", "templates", "benchmarks", "examples")
         for p in (root / folder).rglob("*.*")
     ]
-    names = {p.relative_to(root).as_posix() for p in wanted if p.is_file() and not _LEFT_BY_TOOLS & set(p.parts)}
+    names = {p.relative_to(root).as_posix() for p in wanted if p.is_file() and not _is_left(p)}
     assert names - sdist_files == set()
     assert sdist_files >= {"README.md", "LICENSE", "pyproject.toml"}
 
