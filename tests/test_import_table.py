@@ -25,6 +25,7 @@ ALLOWED = {
     "positions": set(),
     "problems": {"errors"},
     "kernel": set(),
+    "controllers": {"units"},  # what a user's own file imports
     "vectors": {"kernel", "space_vectors"},
     "sogi": {"kernel", "vectors"},
     "waveforms": COMMON,
@@ -34,7 +35,7 @@ ALLOWED = {
     "checks": COMMON | {"profile", "scenario", "measure", "waveforms"},
     "control": COMMON | KERNELS,
     "plant": COMMON | KERNELS,
-    "simulation": COMMON | KERNELS | {"plant", "control", "scenario", "waveforms"},
+    "simulation": COMMON | KERNELS | {"controllers", "plant", "control", "scenario", "waveforms"},
     # The kernel's digest is part of the provenance of a run.
     "study": COMMON | {"kernel", "profile", "scenario", "simulation", "checks", "waveforms"},
     "report": COMMON | {"checks.results", "waveforms", "profile", "measure"},

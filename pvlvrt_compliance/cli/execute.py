@@ -1,6 +1,7 @@
 """Run the tests, show them, write the reports."""
 
-from collections.abc import Callable, Iterable, Iterator
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from datetime import datetime
 from functools import partial
@@ -67,6 +68,8 @@ def _own_controller(request: Request, job: Job) -> "ForeignSimulator | None":
 
     controller = ForeignSimulator(request.controller, job.given, request.mapping)
     controller.provenance(job.parameters)
+    for note in controller.notes:
+        print(f"pvlvrt-check: {request.controller}: {note}", file=sys.stderr)
     return controller
 
 
@@ -203,12 +206,24 @@ def _show(results: Results, request: Request) -> None:
         screen.print(console.summary_line(results), soft_wrap=True)
         return
     screen.print(console.render(results))
+    if request.controller is not None:
+        screen.print(_rates(results.provenance), soft_wrap=not screen.is_terminal)
     for profile in results.profiles:
         _show_doubts(screen, profile.notes)
         if profile.left_out:
             left_out = f"Left out: {', '.join(profile.left_out)} of {profile.id} (long; --include-long runs them)"
             screen.print(left_out, soft_wrap=not screen.is_terminal)
     screen.print(f"Report: {Path(request.output) / 'report.html'}", soft_wrap=True)
+
+
+def _rates(origin: Mapping[str, Any]) -> str:
+    """How a controller of the user's own was run."""
+    sample_us, steps = 1e6 * origin["controller_sample_time_s"], origin["plant_steps_per_sample"]
+    return (
+        f"Controller: {origin['controller']} ({origin['controller_kind']}), called every {sample_us:g} us;"
+        f" plant step {origin['plant_step_us']:g} us ({steps} in a sample time);"
+        f" computation delay {origin['computation_delay_samples']}"
+    )
 
 
 def _show_doubts(screen: Console, notes: tuple[str, ...]) -> None:

@@ -61,12 +61,13 @@ _PER_HALF_LINK = 0.5 / K_PWM  # modulating signal of the paper per one of half t
 
 
 class Timing(NamedTuple):
-    """When things happen, in whole numbers. A period is the plant's, of ``ratio`` plant steps, as in a record."""
+    """When things happen. A period is the plant's, of ``ratio`` plant steps, as in a record."""
 
     first: int  # period in which the controller begins to act (negative: unrecorded settling)
     armed: int  # period from which the relays trip
     ratio: int  # periods from one call of the controller to the next
     held: int  # calls before the first period, in which the controller sees the steady state
+    sample_time: float  # as the controller has it: what its clock goes by (s)
 
 
 class DoorTable(NamedTuple):
@@ -267,13 +268,13 @@ def synchronised_controller(
     source = source_at(t, 0, tables.grid)
     now = as_at(t, source.k, p, tables)
     y = observe(plant, m, source, t, now, tables)
-    for k in range(max(timing.held, 1)):  # that never sees it, is at least told to begin there
-        since = k * T_c
-        back = rotation(tables.grid.w[0] * (since - timing.held * T_c))
-        progress[0] = t + since - timing.held * T_c
+    for k in range(max(timing.held, 1)):  # who is never held is told where to begin all the same
+        ahead = (timing.held - k) * T_c
+        back = rotation(-tables.grid.w[0] * ahead)
+        progress[0] = t - ahead
         then, m_then = turned_state(plant, back), turned(m, back)
         seen = Measured(u_g_ab=turned(y.u_ab, back), i_ab=then.i, v_dc=then.v_dc, i_pv=then.i_pv)
-        put_signals(door.signals, since, seen, 0.0, then, m_then, now.G, 0.0)
+        put_signals(door.signals, k * timing.sample_time, seen, 0.0, then, m_then, now.G, 0.0)
         put_commands(door.commands, m_then, then.v_dc)
         status = hold(door, k == 0)
         if status == COMPLETED and timing.held > 0:
@@ -340,7 +341,7 @@ def run_foreign(
         if called:
             progress[0] = t
             seen = seen_at(calls, plant, y, hardware)
-            since = (calls + timing.held) * timing.ratio * T
+            since = (calls + timing.held) * timing.sample_time
             put_signals(door.signals, since, seen, y.u_zero, plant, m, now.G, 1.0)
             status = call(door)
             if status != COMPLETED:

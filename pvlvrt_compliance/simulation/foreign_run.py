@@ -51,7 +51,7 @@ class ForeignRecord(NamedTuple):
     notes: tuple[str, ...] = ()  # what the controller had to say
 
 
-def timing_of(parameters: Parameters, rates: Rates) -> Timing:
+def timing_of(parameters: Parameters, rates: Rates, sample_time_s: float) -> Timing:
     """When the controller begins to see and to act, in whole sample times."""
     simulation = parameters.simulation
     settling_s = simulation.settling_s if "settling_s" in simulation.model_fields_set else SETTLING_S
@@ -61,6 +61,7 @@ def timing_of(parameters: Parameters, rates: Rates) -> Timing:
         armed=-math.ceil((1 - _ARMED_AFTER) * settling) * rates.periods,
         ratio=rates.periods,
         held=not_below(simulation.synchronising_s / rates.sample_time_s),
+        sample_time=sample_time_s,
     )
 
 
@@ -87,10 +88,11 @@ def run_through(
     UsageError
         When it cannot be opened, or its sample time cannot be used.
     """
-    rates = rates_of(door.describe().sample_time_s, parameters)
+    sample_time_s = door.describe().sample_time_s
+    rates = rates_of(sample_time_s, parameters)
     parameters = with_rates(parameters, rates)
     plant, tables = plant_params(parameters, scenario), plant_tables(parameters, scenario)
-    timing = timing_of(parameters, rates)
+    timing = timing_of(parameters, rates, sample_time_s)
     period_s = plant.ratio * plant.T_S
     controller = controller_params(parameters, scenario)
     start = steady_state(plant, tables.grid, controller, scenario, timing.first * period_s)
@@ -170,7 +172,7 @@ def warm_up() -> None:
     plant, tables = plant_params(parameters, scenario), plant_tables(parameters, scenario)
     start = steady_state(plant, tables.grid, controller_params(parameters, scenario), scenario, 0.0)
     opened = DoorCall(address=0, argument=0, inputs=real_block([]), outputs=real_block([]))
-    _run_nothing(start, opened, plan=every_period(0), timing=Timing(0, 0, 1, 0), plant=plant, tables=tables)
+    _run_nothing(start, opened, plan=every_period(0), timing=Timing(0, 0, 1, 0, 1.0), plant=plant, tables=tables)
 
 
 def _run_nothing(  # type: ignore[no-untyped-def]

@@ -47,6 +47,8 @@ class ForeignSimulator:
         self.notes: list[str] = []  # what the controller has said in its runs so far, each once
         self._mapping = mapping
         self.description = self._describe()
+        if loose := self.loose_inputs():
+            self.notes.append(f"tied to nothing and left as the controller has them: inputs {', '.join(loose)}")
 
     def __call__(self, scenario: Scenario, parameters: Parameters) -> Waveforms:
         """Run the controller through a scenario.
@@ -76,10 +78,18 @@ class ForeignSimulator:
 
         return recorded(scenario, playback_table(scenario), row_s, make)
 
+    def loose_inputs(self) -> tuple[str, ...]:
+        """Inputs that are given nothing, not even by a constant of the mapping."""
+        return tuple(port.name for port in self.description.inputs if port.is_loose)
+
+    def mapping(self) -> str | None:
+        """The mapping file, if there is one."""
+        return mapping_path(self.spec, self._mapping)
+
     def provenance(self, parameters: Parameters) -> dict[str, Any]:
         """What identifies the controller and how it was run."""
         rates = rates_of(self.description.sample_time_s, parameters)
-        mapping = mapping_path(self.spec, self._mapping)
+        mapping = self.mapping()
         return {
             "controller": self.spec,
             "controller_kind": self.description.kind,

@@ -38,7 +38,11 @@ def test_provenance_says_whose_controller_it_was(judge, controller):
     assert (origin["controller_sample_time_s"], origin["plant_step_us"]) == (1e-4, pytest.approx(5.0))
     assert origin["computation_delay_samples"] == 1
     assert origin["controller_parameters"]["power_pu"] == 0.9
-    assert reports.test["measurements"]["controller"] == {"v_fault_pu": None, "q_ref_kvar": None, "p_ref_kw": 1.0}
+    assert reports.test["measurements"]["controller"] == {
+        "v_fault_pu": None,
+        "q_ref_kvar": None,
+        "p_ref_kw": pytest.approx(1.0),
+    }
 
 
 def test_error_of_a_controller_ends_its_test_only(judge, controller):

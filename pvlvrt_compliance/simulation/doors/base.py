@@ -45,6 +45,11 @@ class Port:
     width: int = 1
     note: str = ""
 
+    @property
+    def is_loose(self) -> bool:
+        """Whether the port, or an element of it, is tied to nothing."""
+        return self.mapped_to is None or "-" in self.mapped_to.split(", ")
+
 
 @dataclass(frozen=True)
 class ParameterInfo:

@@ -1,7 +1,7 @@
 """Controllers of these tests, opened once."""
 
 from collections.abc import Callable
-from functools import cache
+from functools import lru_cache
 from pathlib import Path
 
 import pytest
@@ -15,7 +15,7 @@ FOLDER = Path(__file__).parent
 def opened() -> Callable[..., ForeignSimulator]:
     """Open a controller of this folder: ``opened("file.py:Class", name=value, ...)``."""
 
-    @cache
+    @lru_cache(maxsize=None, typed=True)
     def opened(spec, **given):
         return ForeignSimulator(f"{FOLDER / spec}", given)
 

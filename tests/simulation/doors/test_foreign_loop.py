@@ -84,10 +84,11 @@ def test_command_acts_one_sample_time_later(opened):
 
 
 def test_current_into_the_bridge_balances_the_link(opened):
-    """In steady state the bridge takes on average what the array gives."""
-    (segment,) = record(opened)
+    """In steady state the bridge takes on average what the array gives, sampled often enough to see the average."""
+    (segment,) = record(opened, sample_time_s=1e-5)
     cycle = slice(0, 500)
-    assert segment["i_dc_a"][cycle].mean() == pytest.approx(segment["i_pv_a"][cycle].mean(), rel=1e-2)
+    assert segment["v_dc_v"][500] == pytest.approx(segment["v_dc_v"][0], abs=1e-3)
+    assert segment["i_dc_a"][cycle].mean() == pytest.approx(segment["i_pv_a"][cycle].mean(), rel=2e-2)
 
 
 @pytest.mark.parametrize(("sample_time_s", "dt_s"), [(1e-5, 40e-6), (4e-4, 40e-6), (5e-4, 35.7e-6)])
