@@ -109,7 +109,7 @@ class ForeignSimulator:
         if ended.answer is None:
             raise UsageError(f"--controller {self.spec}: {_with_said(ended.reason, ended)}")
         if "error" in ended.answer:
-            raise UsageError(f"--controller {self.spec}: {ended.answer['error']}")
+            raise UsageError(f"--controller {self.spec}: {_with_said(ended.answer['error'], ended)}")
         return Description.from_json(ended.answer["description"])
 
 
