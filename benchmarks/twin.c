@@ -1,9 +1,10 @@
 /* The plant and the controller of the package once more, in C: the yardstick of speed.py.
  *
  * Same equations in the same order; the Python block of the same name says what each one is and where it comes from.
- * The structures and constants are in layout.h, which twin.py writes from the package's own.
+ * The controller is that of examples/bundled-controller-c. The structures and constants are in structures.h and
+ * layout.h, which twin.py writes from the package's own.
  */
-#include "twin_control.h"
+#include "blocks.h"
 #include "twin_plant.h"
 
 static inline double *record_phases(double *row, vector ab, double zero)

@@ -7,7 +7,7 @@ twice: a field that is renamed there no longer compiles here.
 import ctypes
 import shutil
 import subprocess
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple, get_args, get_type_hints
@@ -44,15 +44,20 @@ TOLERANCE = 1e-6
 """Largest difference of two waveforms, of nominal."""
 
 _FOLDER = Path(__file__).resolve().parent
+CONTROLLER = _FOLDER.parent / "examples" / "bundled-controller-c"
+"""The controller in C, which is an example, too."""
+
 _FLAGS = ("-std=gnu99", "-O3", "-march=native", "-fcx-limited-range", "-Wall", "-Wextra", "-shared", "-fPIC")
 
-_STRUCTURES = (
+_OF_CONTROLLER = (
     synchronised.Synchronisation,
     lvrt.LvrtOrder,
     controller.Measured,
     controller.ControllerSignals,
     controller.ControllerState,
     controller.ControllerParams,
+)
+_OF_PLANT = (
     grid.Source,
     inverter.Bridge,
     plant.Observed,
@@ -60,12 +65,14 @@ _STRUCTURES = (
     plant.PlantTables,
     loop.Outcome,
 )
-_CONSTANTS: Mapping[str, float] = {
+_CONSTANTS_OF_CONTROLLER: Mapping[str, float] = {
     "PI": np.pi,
     "SQRT2_3": SQRT2_3,
     "SQRT3_2": SQRT3_2,
     "BRIDGE_GAIN": inverter.K_PWM,
     "M_MAX": inverter.M_MAX,
+}
+_CONSTANTS_OF_PLANT: Mapping[str, float] = {
     "K_DIODES": inverter._K_DIODES,
     "NEWTON_TOLERANCE": pv_array._NEWTON_TOLERANCE,
     "NEWTON_STEPS": pv_array._NEWTON_STEPS,
@@ -108,7 +115,8 @@ def _hints(named_tuple: Any) -> dict[str, Any]:
     """Types of the fields; of those that may be none only what the default configuration has."""
     hints = get_type_hints(named_tuple)
     options = {name: (hint,) if hint in _SCALARS else get_args(hint) or (hint,) for name, hint in hints.items()}
-    return {name: of[0] for name, of in options.items() if type(None) not in of or of[0] is MsogiFllState}
+    kept = {name: of[0] for name, of in options.items() if type(None) not in of or of[0] is MsogiFllState}
+    return {name: hint for name, hint in kept.items() if hint in _SCALARS or _hints(hint)}  # C has no empty structure
 
 
 def _fields(named_tuple: Any) -> dict[str, _Field]:
@@ -136,16 +144,30 @@ def _nested(named_tuple: Any) -> list[Any]:
     return [inner for hint in hints if hint not in _SCALARS for inner in _nested(hint)] + [named_tuple]
 
 
-def layout() -> str:
-    """Text of ``layout.h``: the structures and constants of the package, in C."""
-    order = dict.fromkeys(inner for outer in _STRUCTURES for inner in _nested(outer))
-    lines = ["#pragma once", ""]
-    for named_tuple in order:
+def controller_layout() -> str:
+    """Text of the example's ``structures.h``: structures and constants of the package's controller, in C."""
+    head = "/* Structures and constants of the package's controller; written by benchmarks/twin.py from its own. */"
+    order = _in_order(_OF_CONTROLLER)
+    return "\n".join([head, "#pragma once", "", *_in_c(order, _CONSTANTS_OF_CONTROLLER), ""])
+
+
+def plant_layout() -> str:
+    """Text of ``layout.h``: what the twin needs besides."""
+    known = _in_order(_OF_CONTROLLER)
+    order = [named_tuple for named_tuple in _in_order(_OF_PLANT) if named_tuple not in known]
+    return "\n".join(["#pragma once", "", *_in_c(order, _CONSTANTS_OF_PLANT), ""])
+
+
+def _in_order(structures: Iterable[Any]) -> list[Any]:
+    return list(dict.fromkeys(inner for outer in structures for inner in _nested(outer)))
+
+
+def _in_c(structures: Iterable[Any], constants: Mapping[str, float]) -> Iterator[str]:
+    for named_tuple in structures:
         members = " ".join(f"{field.c} {name};" for name, field in _fields(named_tuple).items())
-        lines.append(f"typedef struct {{ {members} }} {named_tuple.__name__};")
-    for name, value in _CONSTANTS.items():
-        lines.append(f"#define {name} {value if isinstance(value, int) else float(value).hex()}")
-    return "\n".join([*lines, ""])
+        yield f"typedef struct {{ {members} }} {named_tuple.__name__};"
+    for name, value in constants.items():
+        yield f"#define {name} {value if isinstance(value, int) else float(value).hex()}"
 
 
 def _packed(value: Any) -> Any:
@@ -216,6 +238,8 @@ class Twin:
     ------
     FileNotFoundError
         Without gcc.
+    ValueError
+        When the package's structures have changed since ``structures.h`` was written.
     subprocess.CalledProcessError
         When the sources do not compile, for instance because a field of the package was renamed.
     """
@@ -224,10 +248,24 @@ class Twin:
         gcc = compiler()
         if gcc is None:
             raise FileNotFoundError("the twin needs gcc")
-        (folder / "layout.h").write_text(layout(), encoding="utf-8")
+        if (CONTROLLER / "structures.h").read_text("utf-8") != controller_layout():
+            raise ValueError("structures.h is not that of the package any more: run benchmarks/twin.py")
+        (folder / "layout.h").write_text(plant_layout(), encoding="utf-8")
         library = folder / "twin.so"
         subprocess.run(
-            [gcc, *_FLAGS, "-I", str(folder), str(_FOLDER / "twin.c"), "-o", str(library), "-lm"], check=True
+            [
+                gcc,
+                *_FLAGS,
+                "-I",
+                str(CONTROLLER),
+                "-I",
+                str(folder),
+                str(_FOLDER / "twin.c"),
+                "-o",
+                str(library),
+                "-lm",
+            ],
+            check=True,
         )
         self._run = ctypes.CDLL(str(library)).run
         self._run.restype = _structure(loop.Outcome)
@@ -267,3 +305,7 @@ def differences(mine: NDArray[np.float64], theirs: NDArray[np.float64]) -> dict[
     nominal = Nominal()
     apart = np.nan_to_num(np.abs(mine - theirs).max(axis=0), nan=np.inf)
     return {name: float(x) / scale_of(name, nominal) for name, x in zip(loop.CHANNELS, apart, strict=True)}
+
+
+if __name__ == "__main__":
+    (CONTROLLER / "structures.h").write_text(controller_layout(), encoding="utf-8")

@@ -1,7 +1,9 @@
 /* The power subsystem: the files of plant/, one function a block. */
 #pragma once
 
-#include "twin_vectors.h"
+#include "vectors.h"
+
+#include "layout.h"
 
 static inline Source source_at(double t, int64_t k, const GridTable *table)
 {

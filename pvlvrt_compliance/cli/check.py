@@ -43,6 +43,13 @@ def check(
             metavar="SPEC", help="A controller of your own: my_ctrl.py:MyController. Default: the bundled one."
         ),
     ] = None,
+    mapping: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE",
+            help="Ties its ports to the plant. Default: NAME.mapping.toml beside it, and by name.",
+        ),
+    ] = None,
     sag: Annotated[
         str | None,
         typer.Option(metavar="DEPTH", help="Depth of the sag, 90% or 0.9; 0% is none.", rich_help_panel=_SAG),
@@ -173,6 +180,7 @@ def check(
     request = Request(
         profiles=tuple(profiles or ()),
         controller=controller,
+        mapping=mapping,
         sag=None if sag is None else SagRequest(sag, phases, two_phase, sag_type, duration, point_on_wave, irradiance),
         overrides={
             "frequency_hz": frequency,
@@ -198,6 +206,8 @@ def check(
         raise UsageError("--phases, --two-phase, --sag-type, --duration, --point-on-wave and --irradiance need --sag")
     if sag is not None and tests:
         raise UsageError("--test selects from the profile's own tests; it does not go with --sag")
+    if mapping is not None and controller is None:
+        raise UsageError("--mapping is for the ports of a controller of your own; it needs --controller")
     job = prepare(request)
     if list_only:
         from pvlvrt_compliance.cli.catalogue import show_tests

@@ -1,6 +1,7 @@
 """Run the tests, show them, write the reports."""
 
-from collections.abc import Callable, Iterable, Iterator
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from datetime import datetime
 from functools import partial
@@ -38,6 +39,7 @@ _INTERRUPTED_STATUS = 130
 def execute(request: Request, job: Job) -> int:
     """Run what was asked for and return the exit status."""
     controller = _own_controller(request, job)
+    told = len(controller.notes) if controller else 0
     run = _Run(request, job, created_at(), OutputFolder(request.output), controller)
     try:
         run.simulate()
@@ -52,6 +54,7 @@ def execute(request: Request, job: Job) -> int:
     except BaseException:
         run.keep_unfinished("stopped by an error of the program")
         raise
+    _tell(controller.notes[told:] if controller else (), request)
     with suppress(SystemExit):  # rich ends the program when the reader of stdout has gone; the verdict still stands
         _show(results, request)
     return 0 if request.exit_zero else EXIT_STATUS[results.status]
@@ -69,9 +72,16 @@ def _own_controller(request: Request, job: Job) -> "ForeignSimulator | None":
         return None
     from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
 
-    controller = ForeignSimulator(request.controller, job.given)
+    controller = ForeignSimulator(request.controller, job.given, request.mapping)
     controller.provenance(job.parameters)
+    _tell(controller.notes, request)
     return controller
+
+
+def _tell(notes: Iterable[str], request: Request) -> None:
+    """Say what there is to know of the user's own controller, or what it has said itself."""
+    for note in notes:
+        print(f"pvlvrt-check: {request.controller}: {note}", file=sys.stderr)
 
 
 class _Run:
@@ -224,12 +234,24 @@ def _show(results: Results, request: Request) -> None:
         screen.print(console.summary_line(results), soft_wrap=True)
         return
     screen.print(console.render(results))
+    if request.controller is not None:
+        screen.print(_rates(results.provenance), soft_wrap=not screen.is_terminal)
     for profile in results.profiles:
         _show_doubts(screen, profile.notes)
         if profile.left_out:
             left_out = f"Left out: {', '.join(profile.left_out)} of {profile.id} (long; --include-long runs them)"
             screen.print(left_out, soft_wrap=not screen.is_terminal)
     screen.print(f"Report: {Path(request.output) / 'report.html'}", soft_wrap=True)
+
+
+def _rates(origin: Mapping[str, Any]) -> str:
+    """How a controller of the user's own was run."""
+    sample_us, steps = 1e6 * origin["controller_sample_time_s"], origin["plant_steps_per_sample"]
+    return (
+        f"Controller: {origin['controller']} ({origin['controller_kind']}), called every {sample_us:g} us;"
+        f" plant step {origin['plant_step_us']:g} us ({steps} in a sample time);"
+        f" computation delay {origin['computation_delay_samples']}"
+    )
 
 
 def _show_doubts(screen: Console, notes: tuple[str, ...]) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import typer
 
-from pvlvrt_compliance.cli import profiles
+from pvlvrt_compliance.cli import controllers, profiles
 from pvlvrt_compliance.cli.check import check
 from pvlvrt_compliance.cli.schema import schema
 from pvlvrt_compliance.errors import PvlvrtError, UsageError
@@ -29,6 +29,7 @@ app = typer.Typer(
 app.callback(invoke_without_command=True)(check)
 app.command()(schema)
 app.add_typer(profiles.app, name="profiles")
+app.add_typer(controllers.app, name="controllers")
 
 
 def run(arguments: Sequence[str]) -> int:

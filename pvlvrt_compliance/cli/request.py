@@ -54,6 +54,7 @@ class Request(NamedTuple):
 
     profiles: tuple[str, ...]
     controller: str | None  # of the user's own
+    mapping: str | None  # file that ties its ports to the plant
     sag: SagRequest | None
     overrides: dict[str, float | str | None]
     events: str | None

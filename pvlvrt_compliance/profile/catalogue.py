@@ -7,8 +7,8 @@ from typing import Any
 from pydantic import ValidationError
 
 from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.problems import dotted, problem_lines
 from pvlvrt_compliance.profile.curves import Envelope
-from pvlvrt_compliance.profile.problems import dotted, problem_lines
 from pvlvrt_compliance.profile.procedure import BY_ENVELOPE, Procedure, StepSequence, TestCase, TestRow
 from pvlvrt_compliance.profile.provenance import weakest
 from pvlvrt_compliance.profile.sequences import Step

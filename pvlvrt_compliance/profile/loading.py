@@ -7,8 +7,8 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from pvlvrt_compliance.errors import ProfileError, UsageError, did_you_mean
+from pvlvrt_compliance.problems import problem_lines
 from pvlvrt_compliance.profile.merging import Merged, merge_file
-from pvlvrt_compliance.profile.problems import problem_lines
 from pvlvrt_compliance.profile.profile import SCHEMA_VERSION, Profile
 from pvlvrt_compliance.profile.search_path import find_profile, is_path, known_profiles, origin_of
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from pvlvrt_compliance.errors import ProfileError, did_you_mean
-from pvlvrt_compliance.profile.positions import Location
+from pvlvrt_compliance.positions import Location
 from pvlvrt_compliance.profile.profile import SCHEMA_VERSION
 from pvlvrt_compliance.profile.search_path import SUFFIX, find_profile, is_path, known_profiles
 from pvlvrt_compliance.profile.sources import Source, Table

@@ -5,8 +5,8 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from pvlvrt_compliance.problems import A_NUMBER, A_TABLE
 from pvlvrt_compliance.profile.curves import Side, VoltageQuantity
-from pvlvrt_compliance.profile.problems import A_NUMBER, A_TABLE
 from pvlvrt_compliance.profile.provenance import Frozen, Marked
 
 Mode = Literal[

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from pvlvrt_compliance.errors import ProfileError
-from pvlvrt_compliance.profile.positions import Location, key_lines
-from pvlvrt_compliance.profile.problems import dotted
+from pvlvrt_compliance.positions import Location, key_lines
+from pvlvrt_compliance.problems import dotted
 from pvlvrt_compliance.profile.search_path import origin_of
 
 LARGEST_FILE_BYTES = 1 << 20

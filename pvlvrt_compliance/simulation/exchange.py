@@ -29,6 +29,8 @@ SIGNALS = (
 The loop writes those up to ``irradiance_w_m2``; the rest stays as it is given.
 """
 
+_MESSAGE = 1  # what a controller's function returns that has something to say
+
 COMMANDS = ("m_a", "m_b", "m_c", "u_a_ref_v", "u_b_ref_v", "u_c_ref_v")
 """What it can command: u_inv = m v_DC / 2, phase to the middle of the link, or that voltage itself (V)."""
 
@@ -43,8 +45,10 @@ class DoorTable(NamedTuple):
     """Addresses and memory of an open door."""
 
     address: int  # of the function that advances the controller by one sample
+    first_address: int  # of one called before all others; 0: none
     hold_address: int  # of one called before it as long as the controller does not act yet; 0: none
-    argument: int  # address that both are called with
+    note_address: int  # of one called after any has returned `_MESSAGE`; 0: that is a failure
+    argument: int  # address that all are called with
     inputs: PortTable  # from `SIGNALS`
     outputs: PortTable  # to `COMMANDS`, and further signals to record
     in_volts: bool  # whether voltages are commanded
@@ -100,24 +104,35 @@ def fault_of(commands: NDArray[np.float64], in_volts: bool) -> int:
 
 
 @kernel
+def is_well(door: DoorTable, address: int) -> bool:
+    """Call a function of the controller, and have what it says noted; whether all is well."""
+    answer = call_address(address, door.argument)
+    if answer == _MESSAGE and door.note_address != 0:
+        answer = call_address(door.note_address, door.argument)
+    well: bool = answer == 0
+    return well
+
+
+@kernel
 def call(door: DoorTable) -> int:
     """Hand over the signals, let the controller work, take its commands."""
     gather(door.signals, door.inputs)
-    if call_address(door.address, door.argument) != 0:
+    if not is_well(door, door.address):
         return CONTROLLER_FAILED
     scatter(door.outputs, door.commands)
     return fault_of(door.commands, door.in_volts)
 
 
 @kernel
-def call_held(door: DoorTable) -> int:
-    """Let a controller work that does not act yet: its outputs are first set to what acts in its place."""
+def hold(door: DoorTable, first: bool) -> int:
+    """Tell a controller that it does not act yet: its outputs are set to what acts in its place."""
     gather(door.commands[: len(COMMANDS)], held_part(door.outputs))
-    if door.hold_address != 0:
-        gather(door.signals, door.inputs)
-        if call_address(door.hold_address, door.argument) != 0:
-            return CONTROLLER_FAILED
-    return call(door)
+    gather(door.signals, door.inputs)
+    if first and door.first_address != 0 and not is_well(door, door.first_address):
+        return CONTROLLER_FAILED
+    if door.hold_address != 0 and not is_well(door, door.hold_address):
+        return CONTROLLER_FAILED
+    return COMPLETED
 
 
 @kernel

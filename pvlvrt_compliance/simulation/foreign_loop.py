@@ -28,8 +28,8 @@ from pvlvrt_compliance.simulation.exchange import (
     COMMANDS,
     DoorTable,
     call,
-    call_held,
     commanded,
+    hold,
     put_commands,
     put_signals,
 )
@@ -129,7 +129,7 @@ def synchronised_controller(
     source = source_at(t, 0, tables.grid)
     now = as_at(t, source.k, p, tables)
     y = observe(plant, m, source, t, now, tables)
-    for k in range(timing.held):
+    for k in range(max(timing.held, 1)):  # who is never held is told where to begin all the same
         ahead = (timing.held - k) * T_c
         back = rotation(-tables.grid.w[0] * ahead)
         progress[0] = t - ahead
@@ -137,7 +137,9 @@ def synchronised_controller(
         seen = Measured(u_g_ab=turned(y.u_ab, back), i_ab=then.i, v_dc=then.v_dc, i_pv=then.i_pv)
         put_signals(door.signals, k * timing.sample_time, seen, 0.0, then, m_then, now.G, 0.0)
         put_commands(door.commands, m_then, then.v_dc)
-        status = call_held(door)
+        status = hold(door, k == 0)
+        if status == COMPLETED and timing.held > 0:
+            status = call(door)
         if status != COMPLETED:
             return status, timing.first - (timing.held - k) * timing.ratio, source.k
     return COMPLETED, timing.first, source.k

@@ -49,6 +49,7 @@ class ForeignRecord(NamedTuple):
 
     channels: tuple[str, ...]
     samples: NDArray[np.float64]
+    notes: tuple[str, ...] = ()  # what the controller had to say
 
 
 def timing_of(parameters: Parameters, rates: Rates, sample_time_s: float) -> Timing:
@@ -100,7 +101,7 @@ def run_through(
     nominal = nominal_of(parameters, scenario)
     opened = door.open(Setting(nominal, start.plant.v_dc))
     try:
-        table = _table(opened, nominal, controller.lvrt.Q_set)
+        table = door_table(opened, nominal, controller.lvrt.Q_set)
         samples = np.empty((sum(plan.rows), len(RECORDED) + len(opened.recorded)))
         outcome = run_foreign(
             start.plant,
@@ -119,10 +120,11 @@ def run_through(
             raise SimulationError(_explained(outcome, period_s, table, door.message()))
     finally:
         door.close()
-    return ForeignRecord((*RECORDED, *opened.recorded), samples)
+    return ForeignRecord((*RECORDED, *opened.recorded), samples, tuple(opened.notes))
 
 
-def _table(opened: DoorCall, nominal: Nominal, q_set_var: float) -> DoorTable:
+def door_table(opened: DoorCall, nominal: Nominal, q_set_var: float) -> DoorTable:
+    """An open door as the loop has it, for an inverter of this rating and this set-point of reactive power (var)."""
     signals = np.zeros(len(SIGNALS))
     constant = {
         "p_set_w": nominal.apparent_power_va,
@@ -135,7 +137,9 @@ def _table(opened: DoorCall, nominal: Nominal, q_set_var: float) -> DoorTable:
         signals[SIGNALS.index(name)] = value
     return DoorTable(
         address=opened.address,
+        first_address=opened.first_address,
         hold_address=opened.hold_address,
+        note_address=opened.note_address,
         argument=opened.argument,
         inputs=port_table(opened.inputs),
         outputs=port_table(opened.outputs),
@@ -176,7 +180,7 @@ def warm_up() -> None:
 def _run_nothing(  # type: ignore[no-untyped-def]
     start: Start, opened: DoorCall, plan: RecordingPlan, timing: Timing, plant, tables: PlantTables
 ) -> None:
-    table = _table(opened, Nominal(), 0.0)
+    table = door_table(opened, Nominal(), 0.0)
     lines = delay_lines_of(Parameters(), start)
     run_foreign(
         start.plant, start.m, timing, plant, tables, None, lines, table, plan, np.empty((0, len(RECORDED))), np.zeros(1)

@@ -1,12 +1,15 @@
 """From a scenario and parameters to waveforms, with a controller of the user's own in a process of its own."""
 
+import hashlib
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from pvlvrt_compliance.errors import SimulationError, UsageError
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.doors.base import Description, Value
+from pvlvrt_compliance.simulation.doors.mapping_file import mapping_path
 from pvlvrt_compliance.simulation.doors.worker import DescribeJob, RunJob
 from pvlvrt_compliance.simulation.foreign_run import when
 from pvlvrt_compliance.simulation.isolation import RECORD, Ended, do_apart
@@ -29,6 +32,8 @@ class ForeignSimulator:
         The controller, ``my_ctrl.py:MyController``.
     given : mapping
         Its parameters, as far as they are set.
+    mapping : str or None
+        File that ties its ports to the plant; None: the one beside it, if there is one, and their names.
 
     Raises
     ------
@@ -36,10 +41,14 @@ class ForeignSimulator:
         When it cannot be opened.
     """
 
-    def __init__(self, spec: str, given: Mapping[str, Value] | None = None) -> None:
+    def __init__(self, spec: str, given: Mapping[str, Value] | None = None, mapping: str | None = None) -> None:
         self.spec = spec
         self._given = dict(given or {})
+        self.notes: list[str] = []  # what the controller has said in its runs so far, each once
+        self._mapping = mapping
         self.description = self._describe()
+        if loose := self.loose_inputs():
+            self.notes.append(f"tied to nothing and left as the controller has them: inputs {', '.join(loose)}")
 
     def __call__(self, scenario: Scenario, parameters: Parameters) -> Waveforms:
         """Run the controller through a scenario.
@@ -59,22 +68,36 @@ class ForeignSimulator:
 
         def make(plan: RecordingPlan) -> Waveforms:
             in_periods = RecordingPlan(first=rates.thinning * plan.first, step=rates.thinning * plan.step)
-            job = RunJob(self.spec, self._given, scenario=scenario, parameters=parameters, plan=in_periods)
+            job = RunJob(
+                self.spec, self._given, self._mapping, scenario=scenario, parameters=parameters, plan=in_periods
+            )
             ended, arrays = do_apart(job, limit_s, keep=[RECORD])
             answer = _answer_of(ended)
+            self.notes += [note for note in answer["notes"] if note not in self.notes]
             return record_of(arrays[RECORD], plan, row_s, answer["channels"])
 
         return recorded(scenario, playback_table(scenario), row_s, make)
 
+    def loose_inputs(self) -> tuple[str, ...]:
+        """Inputs that are given nothing, not even by a constant of the mapping."""
+        return tuple(port.name for port in self.description.inputs if port.is_loose)
+
+    def mapping(self) -> str | None:
+        """The mapping file, if there is one."""
+        return mapping_path(self.spec, self._mapping)
+
     def provenance(self, parameters: Parameters) -> dict[str, Any]:
         """What identifies the controller and how it was run."""
         rates = rates_of(self.description.sample_time_s, parameters)
+        mapping = self.mapping()
         return {
             "controller": self.spec,
             "controller_kind": self.description.kind,
             "controller_name": self.description.name,
             "controller_digest": self.description.digest,
             "controller_parameters": {p.name: self._given.get(p.name, p.value) for p in self.description.parameters},
+            "controller_notes": [*self.description.notes, *self.notes],
+            **(_mapping_provenance(mapping) if mapping else {}),
             "controller_sample_time_s": self.description.sample_time_s,
             "plant_step_us": rates.plant_step_us,
             "plant_steps_per_sample": rates.steps * rates.periods,
@@ -82,12 +105,17 @@ class ForeignSimulator:
         }
 
     def _describe(self) -> Description:
-        ended, _ = do_apart(DescribeJob(self.spec, self._given), _OPENING_LIMIT_S)
+        ended, _ = do_apart(DescribeJob(self.spec, self._given, self._mapping), _OPENING_LIMIT_S)
         if ended.answer is None:
             raise UsageError(f"--controller {self.spec}: {_with_said(ended.reason, ended)}")
         if "error" in ended.answer:
-            raise UsageError(f"--controller {self.spec}: {ended.answer['error']}")
+            raise UsageError(f"--controller {self.spec}: {_with_said(ended.answer['error'], ended)}")
         return Description.from_json(ended.answer["description"])
+
+
+def _mapping_provenance(mapping: str) -> dict[str, str]:
+    digest = hashlib.sha256(Path(mapping).read_bytes()).hexdigest()
+    return {"controller_mapping": mapping, "controller_mapping_digest": digest}
 
 
 def _answer_of(ended: Ended) -> dict[str, Any]:

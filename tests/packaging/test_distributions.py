@@ -13,7 +13,13 @@ import pytest
 from pvlvrt_compliance.resources import resource_folder
 
 _NAME = "pvlvrt_compliance"
+_BUILT = {".so", ".o"}
 _LEFT_BY_TOOLS = {"__pycache__", "build", ".pytest_cache", ".hypothesis"}
+
+
+def _is_left(path):
+    """Whether a tool has left this file behind."""
+    return path.suffix in _BUILT or bool(_LEFT_BY_TOOLS & set(path.parts))
 
 
 def _call(*command, cwd):
@@ -63,9 +69,15 @@ def test_wheel_has_every_source_profile_and_template(root, wheel_files):
     sources = {p.relative_to(root).as_posix(): p for p in (root / _NAME).rglob("*.py")}
     sources |= {f"{_NAME}/{p.relative_to(root).as_posix()}": p for p in (root / "profiles").glob("*.toml")}
     sources |= {f"{_NAME}/{p.relative_to(root).as_posix()}": p for p in (root / "reports").iterdir() if p.is_file()}
+    sources |= {p.relative_to(root).as_posix(): p for p in (root / _NAME).rglob("*.h")}
+    sources |= {f"{_NAME}/{p.relative_to(root).as_posix()}": p for p in _templates(root)}
     sources[f"{_NAME}/py.typed"] = root / _NAME / "py.typed"
     assert {name for name in sources if name not in wheel_files} == set()
     assert {name for name, path in sources.items() if wheel_files[name] != path.read_bytes()} == set()
+
+
+def _templates(root):
+    return [p for p in (root / "templates").rglob("*") if p.is_file() and "__pycache__" not in p.parts]
 
 
 def test_wheel_has_nothing_else(wheel_files):
@@ -73,15 +85,19 @@ def test_wheel_has_nothing_else(wheel_files):
     tops = {name.partition("/")[0] for name in wheel_files}
     assert {top for top in tops if not top.endswith(".dist-info")} == {_NAME}
     inside = {Path(name).suffix for name in wheel_files if name.startswith(f"{_NAME}/")}
-    assert inside <= {".py", ".typed", ".toml", ".j2", ".css", ".js", ".svg", ""}
+    assert inside <= {".py", ".typed", ".toml", ".j2", ".css", ".js", ".svg", ".c", ".h", ".md", ".yml", ""}
     assert not any("cache" in name for name in wheel_files)
     assert any(name.endswith("/licenses/LICENSE") for name in wheel_files)
 
 
 def test_sdist_can_be_tested(root, sdist_files):
     """The sdist carries tests and benchmarks besides what the wheel is made from."""
-    wanted = [p for folder in ("tests", "profiles", "reports", "benchmarks") for p in (root / folder).rglob("*.*")]
-    names = {p.relative_to(root).as_posix() for p in wanted if p.is_file() and not _LEFT_BY_TOOLS & set(p.parts)}
+    wanted = [
+        p
+        for folder in ("tests", "profiles", "reports", "templates", "benchmarks", "examples")
+        for p in (root / folder).rglob("*.*")
+    ]
+    names = {p.relative_to(root).as_posix() for p in wanted if p.is_file() and not _is_left(p)}
     assert names - sdist_files == set()
     assert sdist_files >= {"README.md", "LICENSE", "pyproject.toml"}
 
@@ -121,9 +137,19 @@ def test_resources_of_a_wheel_are_its_own(installed, tmp_path):
     script = (
         "from pathlib import Path; import pvlvrt_compliance; from pvlvrt_compliance.resources import resource_folder;"
         "package = Path(pvlvrt_compliance.__file__).resolve().parent;"
-        "print([resource_folder(name) == package / name for name in ('profiles', 'reports')])"
+        "print([resource_folder(name) == package / name for name in ('profiles', 'reports', 'templates')])"
     )
-    assert _done(installed / "python", "-c", script, cwd=tmp_path).stdout.strip() == "[True, True]"
+    assert _done(installed / "python", "-c", script, cwd=tmp_path).stdout.strip() == "[True, True, True]"
+
+
+def test_project_from_a_wheel(installed, tmp_path):
+    """The installed program begins a controller in Python that passes its own gate, and prints the C header."""
+    _done(installed / "pvlvrt-check", "controllers", "new", "mine", cwd=tmp_path)
+    gate = ("--controller", "controller.py:Controller", "--profile", "iec61400-21", "--sag", "50%")
+    done = _done(installed / "pvlvrt-check", *gate, cwd=tmp_path / "mine")
+    assert "PASS: 1 test; checks: 4 pass" in done.stdout
+    header = _done(installed / "pvlvrt-check", "controllers", "header", cwd=tmp_path).stdout
+    assert "Model_Outputs" in header
 
 
 def test_bad_input_from_a_wheel(installed, tmp_path):
@@ -148,7 +174,7 @@ def test_editable_install_uses_the_folders_of_the_checkout(installed, root, tmp_
     assert [Path(line) for line in found] == [root.resolve() / "profiles", root.resolve() / "reports"]
 
 
-@pytest.mark.parametrize("name", ["profiles", "reports"])
+@pytest.mark.parametrize("name", ["profiles", "reports", "templates"])
 def test_resources_of_these_tests(name):
     """However the package under test is installed, its folders have files."""
     assert any(resource_folder(name).iterdir())

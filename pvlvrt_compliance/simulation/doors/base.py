@@ -34,6 +34,8 @@ class Port:
         Signal that it is given, command that it gives, or the name it is recorded under; None: neither.
     width : int
         Numbers that it holds.
+    note : str
+        Why it is not mapped, where that needs saying.
     """
 
     name: str
@@ -41,6 +43,12 @@ class Port:
     description: str = ""
     mapped_to: str | None = None
     width: int = 1
+    note: str = ""
+
+    @property
+    def is_loose(self) -> bool:
+        """Whether the port, or an element of it, is tied to nothing."""
+        return self.mapped_to is None or "-" in self.mapped_to.split(", ")
 
 
 @dataclass(frozen=True)
@@ -69,6 +77,8 @@ class Description:
         SHA-256 of its file, or of what names it (hexadecimal).
     sample_time_s : float
         From one call to the next (s).
+    notes : tuple of str
+        What else there is to know of it.
     """
 
     kind: str
@@ -78,6 +88,7 @@ class Description:
     inputs: tuple[Port, ...] = ()
     outputs: tuple[Port, ...] = ()
     parameters: tuple[ParameterInfo, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def to_json(self) -> dict[str, Any]:
         """As plain dictionaries."""
@@ -92,6 +103,7 @@ class Description:
                 "inputs": tuple(Port(**port) for port in data["inputs"]),
                 "outputs": tuple(Port(**port) for port in data["outputs"]),
                 "parameters": tuple(ParameterInfo(**parameter) for parameter in data["parameters"]),
+                "notes": tuple(data["notes"]),
             }
         )
 
@@ -116,6 +128,7 @@ class Block(NamedTuple):
 class DoorCall(NamedTuple):
     """An open door. Addresses are of functions ``int32_t f(void *argument)`` in this process that return 0 on success.
 
+    A function that returns 1 has something to say: with a ``note_address``, that is called, and the run goes on.
     Memory and functions live until the door is closed; the door keeps them alive.
     """
 
@@ -123,9 +136,12 @@ class DoorCall(NamedTuple):
     argument: int  # what it is called with
     inputs: Block  # written before every call
     outputs: Block  # read after it; held in between
+    first_address: int = 0  # called once before all others, when the first inputs are there; 0: none
     hold_address: int = 0  # called before it as long as the controller does not act yet; 0: none
+    note_address: int = 0  # called after a function has returned 1; 0: that is a failure
     in_volts: bool = False  # whether the outputs command voltages
     recorded: tuple[str, ...] = ()  # names of the further signals, by which they are recorded
+    notes: Sequence[str] = ()  # what the controller has to say; grows as it runs
 
 
 class Setting(NamedTuple):

@@ -7,6 +7,7 @@ import pickle
 import select
 import signal
 import sys
+import tempfile
 import traceback
 from collections.abc import Mapping
 from contextlib import suppress
@@ -19,7 +20,7 @@ import numpy as np
 from pvlvrt_compliance.errors import PvlvrtError, SimulationError
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
-from pvlvrt_compliance.simulation.doors.base import Value
+from pvlvrt_compliance.simulation.doors.base import Door, Value
 from pvlvrt_compliance.simulation.doors.opening import door_to
 from pvlvrt_compliance.simulation.isolation import ANSWER, FORKS, JOB, PROGRESS, RECORD, SAID
 from pvlvrt_compliance.simulation.recorder import RecordingPlan
@@ -31,6 +32,7 @@ class DescribeJob:
 
     spec: str
     given: Mapping[str, Value] = field(default_factory=dict)
+    mapping: str | None = None  # file
     beside: str = field(default_factory=os.getcwd)  # folder that relative names in ``spec`` start from
 
 
@@ -114,6 +116,7 @@ def _do(folder: Path) -> None:
     os.dup2(said, 2)
     job = pickle.loads((folder / JOB).read_bytes())
     os.chdir(job.beside)
+    tempfile.tempdir = str(folder)  # removed with the job, however it ends
     try:
         answer = _answer(job, folder)
     except PvlvrtError as error:
@@ -126,7 +129,14 @@ def _do(folder: Path) -> None:
 
 
 def _answer(job: DescribeJob, folder: Path) -> dict[str, Any]:
-    door = door_to(job.spec, job.given)
+    door = door_to(job.spec, job.given, job.mapping)
+    try:
+        return _use(door, job, folder)
+    finally:
+        door.close()
+
+
+def _use(door: Door, job: DescribeJob, folder: Path) -> dict[str, Any]:
     if not isinstance(job, RunJob):
         return {"description": door.describe().to_json()}
     from pvlvrt_compliance.simulation.foreign_run import run_through
@@ -135,4 +145,4 @@ def _answer(job: DescribeJob, folder: Path) -> dict[str, Any]:
         progress: Any = np.frombuffer(mmap.mmap(file.fileno(), 0), dtype=np.float64)
     record = run_through(door, job.scenario, job.parameters, job.plan, progress)
     np.save(folder / RECORD, record.samples)
-    return {"channels": record.channels}
+    return {"channels": record.channels, "notes": record.notes}

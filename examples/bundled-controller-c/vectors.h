@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "layout.h"
+#include "structures.h"
 
 #ifndef CMPLX
 #define CMPLX(re, im) __builtin_complex((double)(re), (double)(im))
@@ -42,3 +42,18 @@ static inline SogiState sogi_step(SogiState x, vector forcing, Rotation turn)
 
 static inline vector positive_sequence(SogiState x) { return 0.5 * (x.u + ahead(x.qu)); }
 static inline vector negative_sequence(SogiState x) { return 0.5 * (x.u - ahead(x.qu)); }
+
+/* Vector of phase quantities, power-invariant; their zero sequence drops out. */
+static inline vector vector_of(double a, double b, double c)
+{
+    return CMPLX(SQRT2_3 * (a - 0.5 * b - 0.5 * c), SQRT2_3 * SQRT3_2 * (b - c));
+}
+
+/* Phase quantities of a vector, without zero sequence. */
+static inline void phases_of(vector z, double *phases)
+{
+    double along = SQRT2_3 * creal(z), across = SQRT2_3 * SQRT3_2 * cimag(z);
+    phases[0] = along;
+    phases[1] = -0.5 * along + across;
+    phases[2] = -0.5 * along - across;
+}

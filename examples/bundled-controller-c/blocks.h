@@ -1,7 +1,9 @@
-/* The control subsystem: the files of control/, one function a block. */
+/* The control subsystem, one function a block: the same equations in the same order as the package's control/, where the
+ * Python block of the same name says what each one is and where it comes from. The C twin of the benchmarks runs it, too.
+ */
 #pragma once
 
-#include "twin_vectors.h"
+#include "current_references.h"
 
 static inline double fll_step(SogiState x, vector e, double w, const FllParams *p, double T)
 {
@@ -38,7 +40,7 @@ static inline LvrtOrder lvrt_step(vector u_pos, vector u_neg, const LvrtParams *
 {
     double V_pos = length(u_pos) / p->u_nom, V_neg = length(u_neg) / p->u_nom;
     if (V_pos >= p->V_detect)
-        return (LvrtOrder){.V_fault = V_pos, .fault = false, .P_limit = p->S_nom, .Q_ref = 0.0};
+        return (LvrtOrder){.V_fault = V_pos, .fault = false, .P_limit = p->S_nom, .Q_ref = p->Q_set};
     double S_fault = max(V_pos - V_neg, 0.0) * p->S_nom;
     double Q = min(reactive_power_of_voltage(V_pos, p), S_fault);
     double P_fault = sqrt(max(S_fault * S_fault - Q * Q, 0.0));
@@ -70,15 +72,6 @@ static inline void mppt_step(MpptState *x, double v_dc, double i_pv, bool limite
     double direction = x->P_before > P ? -x->direction : x->direction;
     double v_ref = min(max(x->v_ref + direction * p->dv, p->v_min), p->v_max);
     *x = (MpptState){.v_ref = v_ref, .direction = direction, .k = 0, .energy = 0.0, .P_before = P};
-}
-
-static inline vector current_references(vector u_pos, vector u_neg, double P_ref, double Q_ref,
-                                        const CurrentReferenceParams *p)
-{
-    if (length(u_pos) - length(u_neg) < p->u_pos_less_neg_min)
-        return 0.0;
-    double D = dot(u_pos, u_pos) - dot(u_neg, u_neg);
-    return P_ref / D * (u_pos - u_neg) - Q_ref / D * ahead(u_pos + u_neg);
 }
 
 /* Advances one resonator and returns its output `lead` samples ahead of the state before. */

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pvlvrt_compliance.profile.positions import key_lines
+from pvlvrt_compliance.positions import key_lines
 from pvlvrt_compliance.resources import resource_folder
 
 DOCUMENT = '''# a comment with [brackets] and = signs

@@ -1,0 +1,161 @@
+"""The file that ties a controller's ports to the plant: its tables, and how it is read."""
+
+import json
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    FiniteFloat,
+    PrivateAttr,
+    ValidationError,
+    model_validator,
+)
+
+from pvlvrt_compliance.positions import Location, key_lines
+from pvlvrt_compliance.problems import dotted, problem_lines
+from pvlvrt_compliance.simulation.doors.base import DoorError
+from pvlvrt_compliance.simulation.doors.port_units import Bases
+
+Sign = Literal[1, -1]
+Direction = Literal["out_of_inverter", "into_inverter"]
+OutputKind = Literal["modulating", "voltage"]
+
+ENDING = ".mapping.toml"
+"""What the name of a mapping file ends in that is found beside its controller."""
+
+
+def _as_tuple(value: Any) -> Any:
+    if isinstance(value, str):
+        return (value,)
+    return tuple(value) if isinstance(value, list) else value
+
+
+Names = Annotated[tuple[str, ...], BeforeValidator(_as_tuple)]
+"""A name, or one for every element of a wide port."""
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class InputEntry(_Table):
+    """What an input is given; in a file also a signal's name, a list of them, or a number alone."""
+
+    signal: Names | None = None
+    constant: FiniteFloat | None = Field(default=None, description="in the port's unit")
+    unit: str | None = Field(default=None, description="none: as the controller says")
+    base: FiniteFloat | None = Field(default=None, gt=0, description="1 pu in the signal's unit")
+    sign: Sign = 1
+    direction: Direction = Field(default="out_of_inverter", description="of a positive current")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_short(cls, value: Any) -> Any:
+        if isinstance(value, (str, list, tuple)):
+            return {"signal": value}
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            return {"constant": value}
+        return value
+
+    @model_validator(mode="after")
+    def _one_source(self) -> "InputEntry":
+        if (self.signal is None) == (self.constant is None):
+            raise ValueError("give a signal or a constant")
+        return self
+
+
+class OutputEntry(_Table):
+    """What an output gives; in a file also a command's name or a list of them alone."""
+
+    command: Names | None = None
+    record: Names | None = Field(default=None, description="channel of the record")
+    unit: str | None = Field(default=None, description="none: as the controller says")
+    base: FiniteFloat | None = Field(default=None, gt=0, description="1 pu in the command's unit")
+    sign: Sign = 1
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_short(cls, value: Any) -> Any:
+        return {"command": value} if isinstance(value, (str, list, tuple)) else value
+
+    @model_validator(mode="after")
+    def _one_target(self) -> "OutputEntry":
+        if (self.command is None) == (self.record is None):
+            raise ValueError("give a command, or a name to record it under")
+        return self
+
+
+class MappingFile(_Table):
+    """A mapping file: entries by the port's name, of one element of a wide port by ``name[index]``, from 0."""
+
+    inputs: dict[str, InputEntry] = {}
+    outputs: dict[str, OutputEntry] = {}
+    bases: Bases = Bases()
+    currents: Direction = Field(default="out_of_inverter", description="positive phase currents that name no direction")
+    output_kind: OutputKind | None = Field(default=None, description="of two kinds of commands that are complete")
+
+    _origin: str = PrivateAttr(default="mapping")
+    _lines: dict[Location, int] = PrivateAttr(default_factory=dict)
+
+    def problem(self, location: Location, text: str) -> str:
+        """A problem in words: file, line, key, what is wrong."""
+        return _placed(self._origin, self._lines, location, text)
+
+
+def _placed(origin: str, lines: Mapping[Location, int], location: Location, text: str) -> str:
+    at: Location = location
+    while at and at not in lines:
+        at = at[:-1]
+    return f"{origin}:{lines.get(at, 1)}: {dotted(location)}{': ' if location else ''}{text}"
+
+
+def load_mapping(path: str | Path | None) -> MappingFile | None:
+    """Read a mapping file; None without one.
+
+    Raises
+    ------
+    DoorError
+        When it cannot be read or has keys or values that are not known; all problems with line and key.
+    """
+    if path is None:
+        return None
+    try:
+        text = Path(path).read_text("utf-8-sig")
+        table = tomllib.loads(text)
+    except OSError as error:
+        raise DoorError(f"mapping file {path}: cannot be read ({error.strerror})") from None
+    except (ValueError, RecursionError) as error:
+        raise DoorError(f"mapping file {path}: not TOML ({error})") from None
+    lines = key_lines(text)
+    try:
+        # Strict JSON mode is strict about numbers and texts, yet takes a list for a tuple.
+        mapping = MappingFile.model_validate_json(json.dumps(table, default=str), strict=True)
+    except ValidationError as error:
+        found = problem_lines(error, MappingFile, table)
+        raise refusal(str(path), [_placed(str(path), lines, where, what) for where, what in found]) from None
+    mapping._origin, mapping._lines = str(path), lines
+    return mapping
+
+
+def refusal(origin: str, problems: Sequence[str]) -> DoorError:
+    """All problems of a mapping as one error."""
+    count = f"{len(problems)} problem{'s' * (len(problems) != 1)}"
+    return DoorError("\n".join([f"{origin}: {count}", *(f"  {problem}" for problem in problems)]))
+
+
+def mapping_path(spec: str, named: str | None) -> str | None:
+    """The mapping file of a controller: the one named, else ``<stem>.mapping.toml`` beside it when there is one."""
+    file = Path(spec)
+    if named is not None or file.suffix not in _WITH_PORTS:
+        return named
+    found = file.with_name(file.stem + ENDING)
+    return str(found) if found.is_file() else None
+
+
+_WITH_PORTS = frozenset({".so", ".dll", ".dylib", ".fmu"})
