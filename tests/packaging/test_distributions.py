@@ -77,7 +77,7 @@ def test_wheel_has_every_source_profile_and_template(root, wheel_files):
 
 
 def _templates(root):
-    return [p for p in (root / "templates").rglob("*") if p.is_file() and "__pycache__" not in p.parts]
+    return [p for p in (root / _NAME / "templates").rglob("*") if p.is_file() and "__pycache__" not in p.parts]
 
 
 def test_wheel_has_nothing_else(wheel_files):
@@ -93,9 +93,7 @@ def test_wheel_has_nothing_else(wheel_files):
 def test_sdist_can_be_tested(root, sdist_files):
     """The sdist carries tests and benchmarks besides what the wheel is made from."""
     wanted = [
-        p
-        for folder in ("tests", "profiles", "reports", "templates", "benchmarks", "examples")
-        for p in (root / folder).rglob("*.*")
+        p for folder in ("tests", "profiles", "reports", "benchmarks", "examples") for p in (root / folder).rglob("*.*")
     ]
     names = {p.relative_to(root).as_posix() for p in wanted if p.is_file() and not _is_left(p)}
     assert names - sdist_files == set()
