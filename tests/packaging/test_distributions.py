@@ -70,7 +70,7 @@ def test_wheel_has_every_source_profile_and_template(root, wheel_files):
     sources |= {f"{_NAME}/{p.relative_to(root).as_posix()}": p for p in (root / "profiles").glob("*.toml")}
     sources |= {f"{_NAME}/{p.relative_to(root).as_posix()}": p for p in (root / "reports").iterdir() if p.is_file()}
     sources |= {p.relative_to(root).as_posix(): p for p in (root / _NAME).rglob("*.h")}
-    sources |= {f"{_NAME}/{p.relative_to(root).as_posix()}": p for p in _templates(root)}
+    sources |= {p.relative_to(root).as_posix(): p for p in _templates(root)}
     sources[f"{_NAME}/py.typed"] = root / _NAME / "py.typed"
     assert {name for name in sources if name not in wheel_files} == set()
     assert {name for name, path in sources.items() if wheel_files[name] != path.read_bytes()} == set()
