@@ -69,7 +69,11 @@ class ForeignSimulator:
         def make(plan: RecordingPlan) -> Waveforms:
             in_periods = RecordingPlan(first=rates.thinning * plan.first, step=rates.thinning * plan.step)
             job = RunJob(
-                self.spec, self._given, self._mapping, scenario=scenario, parameters=parameters, plan=in_periods
+                *(self.spec, self._given, self._mapping),
+                scenario=scenario,
+                parameters=parameters,
+                plan=in_periods,
+                digest=self.description.digest,
             )
             ended, arrays = do_apart(job, limit_s, keep=[RECORD])
             answer = _answer_of(ended)
