@@ -1,5 +1,7 @@
 """Other programs as controllers: the examples, the protocol, and programs that do not keep to it."""
 
+import json
+import re
 import shutil
 import socket
 import subprocess
@@ -16,6 +18,7 @@ from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.doors.base import DoorError
+from pvlvrt_compliance.simulation.doors.program_hello import greeting, hello_in
 from pvlvrt_compliance.simulation.doors.program_link import command_of, link_to
 from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
 
@@ -199,3 +202,12 @@ def test_listener_that_says_nothing():
 
 def _take_and_close(server):
     server.accept()[0].close()
+
+
+def test_page_of_the_protocol():
+    """The messages on the page are those of the protocol."""
+    page = (EXAMPLES.parent / "docs" / "controllers" / "program.md").read_text("utf-8")
+    host, answer, start = (json.loads(text) for text in re.findall(r"```json\n(.*?)```", page, re.DOTALL))
+    assert hello_in(json.dumps(answer).encode()).inputs[1].width == 3
+    assert host.keys() == json.loads(greeting({})).keys()
+    assert start["start"].keys() == {"nominal", "parameters"}
