@@ -8,7 +8,7 @@ from pvlvrt_compliance.errors import PvlvrtError
 def resource_folder(name: str) -> Path:
     """Return the folder ``profiles``, ``reports`` or ``templates``.
 
-    A wheel carries both inside the package; an editable install has them beside it.
+    A wheel carries all inside the package; an editable install has the first two beside it.
 
     Raises
     ------

@@ -40,6 +40,7 @@ ALLOWED = {
     "study": COMMON | {"kernel", "profile", "scenario", "simulation", "checks", "waveforms"},
     "report": COMMON | {"checks.results", "waveforms", "profile", "measure"},
     "cli": {"*"},
+    "templates": set(),  # projects of users, which stand alone
     "__main__": {"cli"},
 }
 NUMBA = {"kernel", "plant", "control", "simulation"}

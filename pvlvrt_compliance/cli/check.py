@@ -40,7 +40,9 @@ def check(
     controller: Annotated[
         str | None,
         typer.Option(
-            metavar="SPEC", help="A controller of your own: my_ctrl.py:MyController. Default: the bundled one."
+            metavar="SPEC",
+            help="A controller of your own: my_ctrl.py:MyController, libctrl.so, ctrl.fmu, stdio:COMMAND or"
+            " tcp://HOST:PORT. Default: the bundled one.",
         ),
     ] = None,
     mapping: Annotated[

@@ -9,7 +9,7 @@ from pvlvrt_compliance.errors import SimulationError, UsageError
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.doors.base import Description, Value
-from pvlvrt_compliance.simulation.doors.mapping_file import mapping_path
+from pvlvrt_compliance.simulation.doors.mapping import mapping_path, missing_commands, missing_words
 from pvlvrt_compliance.simulation.doors.worker import DescribeJob, RunJob
 from pvlvrt_compliance.simulation.foreign_run import when
 from pvlvrt_compliance.simulation.isolation import RECORD, Ended, do_apart
@@ -69,7 +69,11 @@ class ForeignSimulator:
         def make(plan: RecordingPlan) -> Waveforms:
             in_periods = RecordingPlan(first=rates.thinning * plan.first, step=rates.thinning * plan.step)
             job = RunJob(
-                self.spec, self._given, self._mapping, scenario=scenario, parameters=parameters, plan=in_periods
+                *(self.spec, self._given, self._mapping),
+                scenario=scenario,
+                parameters=parameters,
+                plan=in_periods,
+                digest=self.description.digest,
             )
             ended, arrays = do_apart(job, limit_s, keep=[RECORD])
             answer = _answer_of(ended)
@@ -81,6 +85,19 @@ class ForeignSimulator:
     def loose_inputs(self) -> tuple[str, ...]:
         """Inputs that are given nothing, not even by a constant of the mapping."""
         return tuple(port.name for port in self.description.inputs if port.is_loose)
+
+    def check_commands(self) -> None:
+        """Refuse a controller whose outputs do not command all three phases.
+
+        Raises
+        ------
+        UsageError
+            With what is missing, and what is free.
+        """
+        outputs = self.description.outputs
+        if missing := missing_commands(outputs):
+            free = [port.name for port in outputs if port.is_loose]
+            raise UsageError(f"--controller {self.spec}: {missing_words(missing, free)}")
 
     def mapping(self) -> str | None:
         """The mapping file, if there is one."""

@@ -54,15 +54,29 @@ def test_bug_is_red_and_its_mending_green(examples, program, reports):
     )
 
 
-def test_crash_in_one_test_leaves_the_others(examples, program, reports):
-    """A library that crashes in deep sags only: `error` there, with the simulated time; the other is judged."""
+@pytest.fixture
+def misbehaving(examples):
+    """The library that misbehaves."""
     library = examples / "libmisbehaving.so"
     source = ROOT / "tests" / "simulation" / "doors" / "library" / "misbehaving.c"
     command = ["gcc", "-std=c99", "-shared", "-fPIC", f"-I{INTERFACE}", str(source), "-o", str(library), "-lm"]
     subprocess.run(command, check=True)
+    return library
+
+
+def test_messages_go_to_stderr(misbehaving, judge):
+    """What the library has to say is told once, beside the verdicts and not among them."""
+    ended, reports = judge("--sag", "20%", "--controller", misbehaving, "--set", "controller.how=8")
+    assert ended.err.count("the limiter is active") == 1
+    assert "the limiter is active" not in ended.out
+    assert "the limiter is active" in reports.json["provenance"]["controller_notes"]
+
+
+def test_crash_in_one_test_leaves_the_others(misbehaving, examples, program, reports):
+    """A library that crashes in deep sags only: `error` there, with the simulated time; the other is judged."""
     settings = [f"controller.{x}" for x in ("how=1", "at_s=0.3", "below_v=150")]
     ended = program(
-        *("--profile", "iec61400-21", "--test", "VD1-full-1", "--test", "VD2-full-1", "--controller", library),
+        *("--profile", "iec61400-21", "--test", "VD1-full-1", "--test", "VD2-full-1", "--controller", misbehaving),
         *(word for setting in settings for word in ("--set", setting)),
         *("--output", examples / "report"),
     )

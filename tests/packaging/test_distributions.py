@@ -70,14 +70,14 @@ def test_wheel_has_every_source_profile_and_template(root, wheel_files):
     sources |= {f"{_NAME}/{p.relative_to(root).as_posix()}": p for p in (root / "profiles").glob("*.toml")}
     sources |= {f"{_NAME}/{p.relative_to(root).as_posix()}": p for p in (root / "reports").iterdir() if p.is_file()}
     sources |= {p.relative_to(root).as_posix(): p for p in (root / _NAME).rglob("*.h")}
-    sources |= {f"{_NAME}/{p.relative_to(root).as_posix()}": p for p in _templates(root)}
+    sources |= {p.relative_to(root).as_posix(): p for p in _templates(root)}
     sources[f"{_NAME}/py.typed"] = root / _NAME / "py.typed"
     assert {name for name in sources if name not in wheel_files} == set()
     assert {name for name, path in sources.items() if wheel_files[name] != path.read_bytes()} == set()
 
 
 def _templates(root):
-    return [p for p in (root / "templates").rglob("*") if p.is_file() and "__pycache__" not in p.parts]
+    return [p for p in (root / _NAME / "templates").rglob("*") if p.is_file() and "__pycache__" not in p.parts]
 
 
 def test_wheel_has_nothing_else(wheel_files):
@@ -93,9 +93,7 @@ def test_wheel_has_nothing_else(wheel_files):
 def test_sdist_can_be_tested(root, sdist_files):
     """The sdist carries tests and benchmarks besides what the wheel is made from."""
     wanted = [
-        p
-        for folder in ("tests", "profiles", "reports", "templates", "benchmarks", "examples")
-        for p in (root / folder).rglob("*.*")
+        p for folder in ("tests", "profiles", "reports", "benchmarks", "examples") for p in (root / folder).rglob("*.*")
     ]
     names = {p.relative_to(root).as_posix() for p in wanted if p.is_file() and not _is_left(p)}
     assert names - sdist_files == set()

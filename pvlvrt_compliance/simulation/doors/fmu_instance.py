@@ -84,6 +84,7 @@ class Fmu:
             raise DoorError(f"its binary cannot be loaded: {error}") from None
         self._boolean = ctypes.c_int if model.version == "2" else ctypes.c_bool
         self._alive: list[Any] = []
+        self._names: dict[int, str] = {}
 
     def start(self, parameters: Iterable[tuple[FmuParameter, Value]], inputs: Ports) -> None:
         """Instantiate and initialise it at time 0; its inputs in the block become those that it starts from.
@@ -181,40 +182,58 @@ class Fmu:
             width = sum(v.width for v, _ in places)
             number = _NUMBERS.get(name, self._boolean)
             values = (number * width).from_buffer(ports.memory, places[0][1].byte)
-            counted = (width,) if self._version == "3" else ()
-            function = getattr(self._fmu.dll, f"{self._prefix}{verb}{name}")
-            calls.append((function, (self._fmu.component, references, len(places), values, *counted)))
+            counted = (ctypes.c_size_t,) if self._version == "3" else ()
+            self._alive += [references, values]
+            function = self._bare(f"{verb}{name}", ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p, *counted)
+            addresses = (ctypes.addressof(references), len(places), ctypes.addressof(values))
+            calls.append((function, (self._fmu.component, *addresses, *(len(values) for _ in counted))))
         return tuple(calls)
 
     def _run(self, calls: Iterable[Call]) -> None:
         for function, arguments in calls:
             if (status := function(*arguments)) > WARNING:
-                raise DoorError(f"{function.__name__} gave {_STATUS[status]}")
+                raise DoorError(f"{self._name(function)} gave {_STATUS[status]}")
+
+    def _bare(self, name: str, *arguments: Any) -> Any:
+        """Give a function of the binary that takes the instance and plain numbers: fewer conversions at every call."""
+        found = getattr(self._fmu.dll, f"{self._prefix}{name}")
+        address = int(ctypes.cast(found, ctypes.c_void_p).value or 0)
+        function = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, *arguments)(address)
+        self._names[id(function)] = f"{self._prefix}{name}"
+        self._alive.append(function)
+        return function
 
     def _do_step(self, time: ctypes.c_double, step_s: float) -> Callable[[], int]:
-        function, component, step = getattr(self._fmu.dll, f"{self._prefix}DoStep"), self._fmu.component, step_s
+        component, double = self._fmu.component, ctypes.c_double
         if self._version == "2":
-            return lambda: function(component, time, step, 1)
+            function = self._bare("DoStep", double, double, ctypes.c_int)
+            return lambda: function(component, time, step_s, 1)
+        function = self._bare("DoStep", double, double, ctypes.c_bool, *4 * [ctypes.c_void_p])
         event, terminate, early = ctypes.c_bool(), ctypes.c_bool(), ctypes.c_bool()
-        last = ctypes.c_double()
-        flags = tuple(ctypes.byref(flag) for flag in (event, terminate, early, last))
+        results = (event, terminate, early, double())
+        self._alive.append(results)
+        addresses = tuple(ctypes.addressof(result) for result in results)
 
         def do_step() -> int:
-            status: int = function(component, time, step, True, *flags)
+            status: int = function(component, time, step_s, True, *addresses)
             if status == OK and (terminate.value or early.value):
                 return TERMINATED if terminate.value else DISCARD
             return status
 
         return do_step
 
+    def _name(self, function: Any) -> str:
+        """Name of a function of FMI; the step is wrapped in one of Python."""
+        return self._names.get(id(function), f"{self._prefix}DoStep")
+
     def _warned(self, function: Any) -> None:
-        said = self._log[-1] if self._log else f"{_name(function, self._prefix)} gave a warning"
+        said = self._log[-1] if self._log else f"{self._name(function)} gave a warning"
         if said not in self.notes and len(self.notes) < _MOST_NOTES:
             self.notes.append(said)
 
     def _ended(self, function: Any, status: int) -> None:
         self._status = status
-        name = _name(function, self._prefix)
+        name = self._name(function)
         asks = "the FMU asks for the end of the simulation"
         if status == TERMINATED or (status == DISCARD and self._version == "2" and self._asks_for_the_end()):
             self._why = asks
@@ -230,9 +249,3 @@ class Fmu:
 
     def _with_log(self, text: str) -> str:
         return "\n".join([text, *(f"  {line}" for line in self._log)])
-
-
-def _name(function: Any, prefix: str) -> str:
-    """Name of a function of FMI; the step is wrapped in one of Python."""
-    name = str(getattr(function, "__name__", ""))
-    return name if name.startswith(prefix) else f"{prefix}DoStep"

@@ -190,7 +190,7 @@ def _json_exchange(
 
     def exchange() -> None:
         tell((template % tuple(given)).encode())
-        reply = table_in(line())
+        reply = table_in(answer := line())
         try:
             for name, place, width in places:
                 if width == 1:
@@ -198,7 +198,7 @@ def _json_exchange(
                 else:
                     _take(reply[name], taken, place, width)
         except (TypeError, ValueError, KeyError) as error:
-            raise DoorError(f"the program answered {shown(str(reply).encode())}: {_what(error)}") from None
+            raise DoorError(f"the program answered {shown(answer)}: {_what(error)}") from None
 
     return exchange
 
@@ -211,7 +211,9 @@ def _take(values: Any, taken: Any, place: int, width: int) -> None:
 
 
 def _what(error: Exception) -> str:
-    return f"there is no {error.args[0]!r}" if isinstance(error, KeyError) else str(error)
+    if isinstance(error, KeyError):
+        return f"there is no {error.args[0]!r}"
+    return "a number is due" if isinstance(error, TypeError) else str(error)
 
 
 def _word(name: str) -> str:

@@ -43,6 +43,7 @@ class RunJob(DescribeJob):
     scenario: Scenario = field(kw_only=True)
     parameters: Parameters = field(kw_only=True)
     plan: RecordingPlan = field(kw_only=True)
+    digest: str = field(kw_only=True)  # of the controller that was described
 
 
 def main() -> None:
@@ -141,6 +142,8 @@ def _use(door: Door, job: DescribeJob, folder: Path) -> dict[str, Any]:
         return {"description": door.describe().to_json()}
     from pvlvrt_compliance.simulation.foreign_run import run_through
 
+    if door.describe().digest != job.digest:
+        raise SimulationError("the controller's file has changed since the first test; its verdicts would be mixed")
     with (folder / PROGRESS).open("r+b") as file:
         progress: Any = np.frombuffer(mmap.mmap(file.fileno(), 0), dtype=np.float64)
     record = run_through(door, job.scenario, job.parameters, job.plan, progress)

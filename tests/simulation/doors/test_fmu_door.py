@@ -23,7 +23,10 @@ FOLDER = Path(__file__).parent
 SAME_START = ("simulation.settling_s=0.5", "simulation.synchronising_s=0")
 QUICK = parameters_from(("simulation.settling_s=0.02", "simulation.synchronising_s=0.01"))
 SHORT = Scenario(sag=Sag(depth=0.0), duration_s=0.1, after_s=0.1)
-MAPPING_3 = '[inputs]\nm_in = ["m_a", "m_b", "m_c"]\n[outputs]\nm_out = ["m_a", "m_b", "m_c"]\n'
+PORTS_3 = (("inputs", "m_in"), ("outputs", "m_out"))
+MAPPING_3 = "".join(
+    [f"[{side}]\n" + "".join(f'"{port}[{k}]" = "m_{x}"\n' for k, x in enumerate("abc")) for side, port in PORTS_3]
+)
 MAPPING_2 = '[outputs]\nm_a_out = "m_a"\nm_b_out = "m_b"\nm_c_out = "m_c"\n'
 
 

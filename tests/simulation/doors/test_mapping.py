@@ -217,7 +217,9 @@ def test_missing_commands_are_refused_with_what_is_free():
     mapped = map_outputs([port("ma"), port("dc")], None, NOMINAL)
     with pytest.raises(DoorError, match=r"no output gives m_b, m_c; outputs that give nothing yet: dc\."):
         check_commands(mapped)
-    assert missing_commands(["u_a_ref_v", "u_b_ref_v", "m_a"]) == ("u_c_ref_v",)
+    assert missing_commands(mapped.ports) == ("m_b", "m_c")
+    volts = map_outputs([port("Ea"), port("Eb"), port("ma")], None, NOMINAL)
+    assert missing_commands(volts.ports) == volts.missing == ("u_c_ref_v",)
 
 
 def test_two_complete_kinds_of_commands_ask_which():

@@ -137,9 +137,12 @@ def test_no_file(tmp_path):
 
 
 def test_library_may_be_replaced_while_it_runs(compiled, tmp_path):
-    """A copy is loaded, so the file is free; nothing of the copy stays behind."""
+    """A copy is loaded, so the file is free; but no run is made with another controller than the one described."""
     library = tmp_path / "libctrl.so"
     shutil.copy(compiled("misbehaving.c"), library)
     simulator = ForeignSimulator(str(library))
     library.write_bytes(library.read_bytes())
     assert simulator(SCENARIO, QUICK).end_s > 0.4
+    library.write_bytes(library.read_bytes() + b"another build")
+    with pytest.raises(SimulationError, match="has changed since the first test"):
+        simulator(SCENARIO, QUICK)
