@@ -62,13 +62,14 @@ def _own_controller(request: Request, job: Job) -> "ForeignSimulator | None":
     Raises
     ------
     UsageError
-        When it cannot be opened, or its sample time does not fit the plant step.
+        When it cannot be opened, does not command all phases, or its sample time does not fit.
     """
     if request.controller is None:
         return None
     from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
 
     controller = ForeignSimulator(request.controller, job.given, request.mapping)
+    controller.check_commands()
     controller.provenance(job.parameters)
     _tell(controller.notes, request)
     return controller

@@ -9,7 +9,7 @@ from pvlvrt_compliance.errors import SimulationError, UsageError
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.doors.base import Description, Value
-from pvlvrt_compliance.simulation.doors.mapping_file import mapping_path
+from pvlvrt_compliance.simulation.doors.mapping import mapping_path, missing_commands, missing_words
 from pvlvrt_compliance.simulation.doors.worker import DescribeJob, RunJob
 from pvlvrt_compliance.simulation.foreign_run import when
 from pvlvrt_compliance.simulation.isolation import RECORD, Ended, do_apart
@@ -86,6 +86,19 @@ class ForeignSimulator:
         """Inputs that are given nothing, not even by a constant of the mapping."""
         return tuple(port.name for port in self.description.inputs if port.is_loose)
 
+    def check_commands(self) -> None:
+        """Refuse a controller whose outputs do not command all three phases.
+
+        Raises
+        ------
+        UsageError
+            With what is missing, and what is free.
+        """
+        outputs = self.description.outputs
+        if missing := missing_commands(outputs):
+            free = [port.name for port in outputs if port.is_loose]
+            raise UsageError(f"--controller {self.spec}: {missing_words(missing, free)}")
+
     def mapping(self) -> str | None:
         """The mapping file, if there is one."""
         return mapping_path(self.spec, self._mapping)
@@ -113,7 +126,7 @@ class ForeignSimulator:
         if ended.answer is None:
             raise UsageError(f"--controller {self.spec}: {_with_said(ended.reason, ended)}")
         if "error" in ended.answer:
-            raise UsageError(f"--controller {self.spec}: {ended.answer['error']}")
+            raise UsageError(f"--controller {self.spec}: {_with_said(ended.answer['error'], ended)}")
         return Description.from_json(ended.answer["description"])
 
 

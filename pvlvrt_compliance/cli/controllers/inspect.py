@@ -7,7 +7,7 @@ import typer
 
 if TYPE_CHECKING:
     from pvlvrt_compliance.scenario.parameters import Parameters
-    from pvlvrt_compliance.simulation.doors.base import Description, Port
+    from pvlvrt_compliance.simulation.doors.base import Port
     from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
 
 _NOTHING = "(nothing)"
@@ -45,6 +45,7 @@ def inspect(
 
 def _facts(simulator: "ForeignSimulator", given: dict[str, Any], parameters: "Parameters") -> dict[str, Any]:
     """All that is known, as plain data."""
+    from pvlvrt_compliance.simulation.doors.mapping import missing_commands
     from pvlvrt_compliance.simulation.sample_time import rates_of
 
     description = simulator.description
@@ -64,18 +65,12 @@ def _facts(simulator: "ForeignSimulator", given: dict[str, Any], parameters: "Pa
         **{key: data[key] for key in ("inputs", "outputs", "parameters", "notes")},
         "unmapped_inputs": _loose(description.inputs),
         "unmapped_outputs": _loose(description.outputs),
-        "missing_commands": _missing(description),
+        "missing_commands": list(missing_commands(description.outputs)),
     }
 
 
 def _loose(ports: "Sequence[Port]") -> list[str]:
     return [port.name for port in ports if port.is_loose]
-
-
-def _missing(description: "Description") -> list[str]:
-    from pvlvrt_compliance.simulation.doors.mapping import missing_commands
-
-    return list(missing_commands(name for port in description.outputs for name in (port.mapped_to or "").split(", ")))
 
 
 def _words(found: dict[str, Any]) -> Iterator[str]:

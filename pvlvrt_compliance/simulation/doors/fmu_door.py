@@ -64,6 +64,7 @@ class FmuDoor:
             inputs=inputs.ports,
             outputs=outputs.ports,
             parameters=tuple(p.info for p in self._model.parameters),
+            notes=self._model.notes,
         )
 
     def open(self, setting: Setting) -> DoorCall:

@@ -71,6 +71,7 @@ class FmuModel(NamedTuple):
     inputs: tuple[Variable, ...]
     outputs: tuple[Variable, ...]
     parameters: tuple[FmuParameter, ...]
+    notes: tuple[str, ...] = ()  # what is wrong with its description
 
 
 def read_model(file: Path) -> FmuModel:
@@ -81,7 +82,7 @@ def read_model(file: Path) -> FmuModel:
     DoorError
         When it is none, is not for co-simulation, or has no binary for this platform.
     """
-    model = _description(file)
+    model, notes = _description(file)
     version = str(model.fmiVersion)[0]
     _refuse_other_kinds(model, version)
     _refuse_other_platforms(file, model.coSimulation.modelIdentifier, version)
@@ -95,6 +96,7 @@ def read_model(file: Path) -> FmuModel:
         inputs=_ports(variables, "input", _TYPES[version]),
         outputs=_ports(variables, "output", _TYPES[version]),
         parameters=tuple(_parameter(v) for v in variables if v.causality == "parameter" and _is_settable(v)),
+        notes=notes,
     )
 
 
@@ -118,14 +120,18 @@ def fmi_library() -> Any:
     return fmpy
 
 
-def _description(file: Path) -> Any:
-    library = fmi_library()
+def _description(file: Path) -> tuple[Any, tuple[str, ...]]:
+    """Description of an FMU, and what the standard forbids in it: tools write much that only a validator minds."""
+    library = fmi_library().model_description
     try:
-        return library.model_description.read_model_description(str(file))
+        try:
+            return library.read_model_description(str(file)), ()
+        except library.ValidationError as error:
+            return library.read_model_description(str(file), validate=False), (f"modelDescription.xml: {error}",)
     except (zipfile.BadZipFile, KeyError) as error:
-        raise DoorError(f"{file} is not an FMU: {str(error).strip(chr(34))}") from None
+        raise DoorError(f"{file.name} is not an FMU: {str(error).strip(chr(34))}") from None
     except Exception as error:
-        raise DoorError(f"{file}: its modelDescription.xml cannot be used: {error}") from None
+        raise DoorError(f"its modelDescription.xml cannot be used: {error}") from None
 
 
 def _refuse_other_kinds(model: Any, version: str) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pvlvrt_compliance.simulation.doors.base import ITEM_SIZES, DoorError, Element
+from pvlvrt_compliance.simulation.doors.base import ITEM_SIZES, DoorError, Element, Port
 from pvlvrt_compliance.simulation.doors.mapping_file import (
     InputEntry,
     MappingFile,
@@ -22,7 +22,7 @@ from pvlvrt_compliance.simulation.foreign_loop import COMMANDS, RECORDED, SIGNAL
 from pvlvrt_compliance.units import Nominal
 
 __all__ = ["Constant", "Mapped", "MappingFile", "RawPort", "check_commands", "load_mapping", "map_inputs"]
-__all__ += ["map_outputs", "mapping_path", "missing_commands", "set_constants"]
+__all__ += ["map_outputs", "mapping_path", "missing_commands", "missing_words", "set_constants"]
 
 MODULATING, VOLTAGES = COMMANDS[:3], COMMANDS[3:]
 
@@ -89,11 +89,16 @@ def check_commands(outputs: Mapped) -> None:
         With the commands that nothing gives and the outputs that are free.
     """
     if outputs.missing:
-        free = f"; outputs that give nothing yet: {', '.join(outputs.unmapped)}" if outputs.unmapped else ""
-        raise DoorError(
-            f"no output gives {', '.join(outputs.missing)}{free}. Tie them under [outputs] of a mapping file"
-            ' (--mapping), for instance ma = "m_a", or to voltages, for instance Ea = "u_a_ref_v"'
-        )
+        raise DoorError(missing_words(outputs.missing, outputs.unmapped))
+
+
+def missing_words(missing: Sequence[str], free: Sequence[str]) -> str:
+    """That commands are missing, what is free, and what to do."""
+    unused = f"; outputs that give nothing yet: {', '.join(free)}" if free else ""
+    return (
+        f"no output gives {', '.join(missing)}{unused}. Tie them under [outputs] of a mapping file"
+        ' (--mapping), for instance ma = "m_a", or to voltages, for instance Ea = "u_a_ref_v"'
+    )
 
 
 def set_constants(memory: NDArray[np.uint8], constants: Iterable[Constant]) -> None:
@@ -156,9 +161,9 @@ def _with_kind(mapped: Mapped, mapping: MappingFile) -> Mapped:
     return mapped._replace(in_volts=in_volts, missing=_missing(given, in_volts))
 
 
-def missing_commands(given: Iterable[str]) -> tuple[str, ...]:
-    """Commands that are missing among those given, of the kind that there is more of."""
-    given = set(given)
+def missing_commands(ports: Iterable[Port]) -> tuple[str, ...]:
+    """Commands that outputs do not give, of the kind that they give more of."""
+    given = {name for port in ports for name in (port.mapped_to or "").split(", ")}
     return min((_missing(given, in_volts) for in_volts in (False, True)), key=len)
 
 

@@ -4,9 +4,18 @@ import json
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, PrivateAttr, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    FiniteFloat,
+    PrivateAttr,
+    ValidationError,
+    model_validator,
+)
 
 from pvlvrt_compliance.positions import Location, key_lines
 from pvlvrt_compliance.problems import dotted, problem_lines
@@ -21,6 +30,16 @@ ENDING = ".mapping.toml"
 """What the name of a mapping file ends in that is found beside its controller."""
 
 
+def _as_tuple(value: Any) -> Any:
+    if isinstance(value, str):
+        return (value,)
+    return tuple(value) if isinstance(value, list) else value
+
+
+Names = Annotated[tuple[str, ...], BeforeValidator(_as_tuple)]
+"""A name, or one for every element of a wide port."""
+
+
 class _Table(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -28,7 +47,7 @@ class _Table(BaseModel):
 class InputEntry(_Table):
     """What an input is given; in a file also a signal's name, a list of them, or a number alone."""
 
-    signal: str | tuple[str, ...] | None = None
+    signal: Names | None = None
     constant: FiniteFloat | None = Field(default=None, description="in the port's unit")
     unit: str | None = Field(default=None, description="none: as the controller says")
     base: FiniteFloat | None = Field(default=None, gt=0, description="1 pu in the signal's unit")
@@ -54,8 +73,8 @@ class InputEntry(_Table):
 class OutputEntry(_Table):
     """What an output gives; in a file also a command's name or a list of them alone."""
 
-    command: str | tuple[str, ...] | None = None
-    record: str | tuple[str, ...] | None = Field(default=None, description="channel of the record")
+    command: Names | None = None
+    record: Names | None = Field(default=None, description="channel of the record")
     unit: str | None = Field(default=None, description="none: as the controller says")
     base: FiniteFloat | None = Field(default=None, gt=0, description="1 pu in the command's unit")
     sign: Sign = 1

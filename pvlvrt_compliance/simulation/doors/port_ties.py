@@ -125,21 +125,19 @@ def _entry_of(slot: Slot, side: Side, guess: Guess) -> tuple[str, Any, str | Non
         if key in side.entries:
             entry = side.entries[key]
             names = side.names_of(entry)
-            if not names or isinstance(names, str):
-                return key, entry, names
-            return key, entry, names[min(slot.k, len(names) - 1)]
+            return key, entry, names[min(slot.k, len(names) - 1)] if names else None
     if not guess.names or (side.table == "outputs" and guess.names[slot.k] in _named(side)):
         return "", None, None
     name = guess.names[slot.k]
     if name in side.known:
-        return "", side.entry_type(**{_TARGETS[side.table]: name}, unit=slot.port.unit or guess.unit), name
-    return "", side.entry_type(record=name), name
+        return "", side.entry_type(**{_TARGETS[side.table]: (name,)}, unit=slot.port.unit or guess.unit), name
+    return "", side.entry_type(record=(name,)), name
 
 
 def _named(side: Side) -> set[str]:
     """Names that the file has: they are not given away by a port's name."""
     found = [side.names_of(entry) for entry in side.entries.values()]
-    return {name for names in found if names for name in ((names,) if isinstance(names, str) else names)}
+    return {name for names in found if names for name in names}
 
 
 def _wrong_entries(side: Side) -> Iterator[tuple[str, str]]:
@@ -155,10 +153,8 @@ def _wrong_entries(side: Side) -> Iterator[tuple[str, str]]:
             yield key, text
         elif name != key and match and int(match[2]) >= widths[name]:
             yield key, f"{name} has {widths[name]} elements, counted from 0"
-        elif isinstance(names, tuple) and len(names) != (1 if name != key else widths[name]):
-            yield key, f"{len(names)} names for {widths[name]} elements"
-        elif isinstance(names, str) and name == key and widths[name] > 1:
-            yield key, f"one name for {widths[name]} elements; write a list of names"
+        elif names is not None and len(names) != (wanted := 1 if name != key else widths[name]):
+            yield key, f"{len(names)} name{'s' * (len(names) != 1)} for {wanted} element{'s' * (wanted != 1)}"
 
 
 def _check_name(entry: Any, name: str | None, side: Side) -> None:

@@ -42,8 +42,6 @@ SCHEMES = ("stdio:", "tcp://")
 _STARTING_S = 30.0  # to start, and to get ready
 _REPLY_S = 10.0
 _HEAD = 8  # bytes before the numbers of a block: the last four are the length of its frame
-_REASON = 1 << 31  # in a length: a text follows, why the program gives up
-_LONGEST_REASON = 4096
 
 
 class ProgramDoor:
@@ -173,28 +171,17 @@ def _binary_exchange(talk: Conversation, inputs: memoryview, outputs: memoryview
     struct.pack_into("<I", inputs, begin, len(inputs) - _HEAD)
     expected = struct.pack("<I", len(outputs) - _HEAD)
     request, numbers = inputs[begin:], outputs[_HEAD:]
-    size, tell, exactly = len(numbers), talk.tell, talk.exactly
+    size, tell, frame = len(numbers), talk.tell, talk.frame
 
     def exchange() -> None:
         tell(request)
-        head = exactly(4)
-        if head != expected:
-            _refuse(talk, head, size)
-        numbers[:] = exactly(size)
+        numbers[:] = frame(expected, size)
 
     return exchange
 
 
-def _refuse(talk: Conversation, head: bytes, size: int) -> None:
-    """Say what is wrong with a frame that is not so long."""
-    (length,) = struct.unpack("<I", head)
-    if length & _REASON and (length ^ _REASON) <= _LONGEST_REASON:
-        raise DoorError(f"the program gave up: {shown(talk.exactly(length ^ _REASON))}")
-    raise DoorError(f"the program sent a frame of {length} bytes ({shown(head)}); {size} are due")
-
-
 def _json_exchange(
-    talk: Conversation, inputs: Sequence[RawPort], outputs: Sequence[RawPort], given: memoryview, taken: memoryview
+    talk: Conversation, inputs: Sequence[RawPort], outputs: Sequence[RawPort], given: Any, taken: Any
 ) -> Callable[[], None]:
     """Exchange of lines of JSON."""
     template = "{" + ", ".join(f"{_word(p.name)}: {_places(p.width)}" for p in inputs) + "}\n"
@@ -216,7 +203,7 @@ def _json_exchange(
     return exchange
 
 
-def _take(values: Any, taken: memoryview, place: int, width: int) -> None:
+def _take(values: Any, taken: Any, place: int, width: int) -> None:
     if not isinstance(values, list) or len(values) != width:
         raise ValueError(f"a list of {width} numbers is due")
     for k, value in enumerate(values):

@@ -4,6 +4,7 @@ import os
 import shlex
 import shutil
 import socket
+import struct
 import subprocess
 import threading
 import time
@@ -15,6 +16,11 @@ from pvlvrt_compliance.simulation.doors.base import DoorError
 
 _AT_ONCE = 1 << 16
 _LONGEST_LINE = 1 << 20
+_LONGEST_REASON = 4096
+_LENGTH = struct.Struct("<I")
+GIVES_UP = 1 << 31
+"""In the length of a frame: a text of so many bytes follows, why the program gives up."""
+
 _PATIENCE_S = 1.0  # with a program that is to end
 
 
@@ -170,7 +176,6 @@ class Conversation:
     def __init__(self, link: Link, timeout_s: float) -> None:
         self._link = link
         self.timeout_s = timeout_s
-        self._rest = b""
         self._since: float | None = None
         self._late = False
         self._over = threading.Event()
@@ -197,14 +202,21 @@ class Conversation:
             raise DoorError(f"the program sent more than the one line that was asked for: {rest[:60]!r}")
         return line
 
-    def exactly(self, size: int) -> bytes:
-        """Take so many bytes, which may be all or only the first of an answer."""
-        data = self._rest or self._more()
-        while len(data) < size:
+    def frame(self, head: bytes, size: int) -> bytes:
+        """Take the frame that answers the last message: the head that it must have, and so many bytes.
+
+        Raises
+        ------
+        DoorError
+            When it is another, with the reason that a program may give in its place.
+        """
+        data = self._more()
+        while len(data) < size + len(head) and data[: len(head)] == head[: len(data)]:
             data += self._more()
+        if len(data) != size + len(head) or data[: len(head)] != head:
+            raise DoorError(self._refusal(data, size))
         self._since = None
-        self._rest = data[size:]
-        return data[:size]
+        return data[len(head) :]
 
     def end(self, farewell: bytes) -> None:
         """Send a last message and close the link; whatever fails."""
@@ -212,6 +224,19 @@ class Conversation:
         with suppress(OSError):
             self._link.write(farewell)
         self._link.close()
+
+    def _refusal(self, data: bytes, size: int) -> str:
+        """What is wrong with a frame."""
+        while len(data) < _LENGTH.size:
+            data += self._more()
+        (length,) = _LENGTH.unpack_from(data)
+        if length & GIVES_UP and (length := length ^ GIVES_UP) <= _LONGEST_REASON:
+            while len(data) < _LENGTH.size + length:
+                data += self._more()
+            return f"the program gave up: {data[_LENGTH.size :].decode('utf-8', 'replace')}"
+        if length == size:
+            return f"the program sent {len(data) - size - _LENGTH.size} bytes more than one frame"
+        return f"the program sent a frame of {length} bytes, beginning with {data[:20]!r}; {size} are due"
 
     def _more(self) -> bytes:
         try:

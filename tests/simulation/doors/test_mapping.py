@@ -1,6 +1,7 @@
 """Ports tied to the plant: by name, by mapping file, in the port's own unit."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -216,7 +217,9 @@ def test_missing_commands_are_refused_with_what_is_free():
     mapped = map_outputs([port("ma"), port("dc")], None, NOMINAL)
     with pytest.raises(DoorError, match=r"no output gives m_b, m_c; outputs that give nothing yet: dc\."):
         check_commands(mapped)
-    assert missing_commands(["u_a_ref_v", "u_b_ref_v", "m_a"]) == ("u_c_ref_v",)
+    assert missing_commands(mapped.ports) == ("m_b", "m_c")
+    volts = map_outputs([port("Ea"), port("Eb"), port("ma")], None, NOMINAL)
+    assert missing_commands(volts.ports) == volts.missing == ("u_c_ref_v",)
 
 
 def test_two_complete_kinds_of_commands_ask_which():
@@ -251,7 +254,7 @@ def refused(tmp_path, text, inputs=(), outputs=()):
             "[inputs]\nVdcc = 'v_dc_v'",
             'my.mapping.toml:2: inputs.Vdcc: the controller has no such input; did you mean "Vdc"?',
         ),
-        ("[inputs]\n\nVdc = 'v_dc'", "my.mapping.toml:3: inputs.Vdc: 'v_dc' is no signal; did you mean \"v_dc_v\"?"),
+        ("[inputs]\n\nVdc = 'v_dc'", "my.mapping.toml:3: inputs.Vdc: 'v_dc' is no signal; did you mean \"v_dc_v\""),
         (
             "[inputs]\nVdc = {signal = 'v_dc_v', unit = 'kA'}",
             "the unit 'kA' does not fit a DC voltage; allowed: V, kV, pu",
@@ -259,13 +262,13 @@ def refused(tmp_path, text, inputs=(), outputs=()):
         ("[inputs]\nVdc = {signal = 'v_dc_v', unit = 'pu'}", "write dc_voltage_v under [bases]"),
         ("[inputs]\nVdc = {signal = 'v_dc_v', unit = 'V', base = 1.0}", "a base is for ports in pu, not in V"),
         ("[inputs]\nVdc = {signal = 'v_dc_v', direction = 'into_inverter'}", "direction is for phase currents"),
-        ("[inputs]\nabc = 'u_a_v'", "one name for 3 elements"),
+        ("[inputs]\nabc = 'u_a_v'", "1 name for 3 elements"),
         ("[inputs]\nabc = ['u_a_v', 'u_b_v']", "2 names for 3 elements"),
         ("[inputs]\nabc = []", "0 names for 3 elements"),
         ("[inputs]\n'abc[3]' = 'u_a_v'", "abc has 3 elements, counted from 0"),
         ("[inputs]\nVdc = true", "my.mapping.toml:2: inputs.Vdc: must be a table"),
         ("[inputs]\nVdc = {unit = 'V'}", "give a signal or a constant"),
-        ("[inputs]\nVdc = {signal = 'v_dc_v', sing = -1}", 'unknown key; did you mean "sign"?'),
+        ("[inputs]\nVdc = {signal = 'v_dc_v', sing = -1}", 'unknown key; did you mean "sign"'),
         ("[input]\nVdc = 'v_dc_v'", 'unknown key; did you mean "inputs"'),
         ("[bases]\nvoltage = 'rms'", "my.mapping.toml:2: bases.voltage:"),
         ("[outputs]\nma = 'm_d'", "'m_d' is no command"),
@@ -301,3 +304,17 @@ def test_no_mapping_file_is_none():
     assert load_mapping(None) is None
     with pytest.raises(DoorError, match="cannot be read"):
         load_mapping("absent.toml")
+
+
+def test_example_on_the_page_is_a_mapping_file(tmp_path):
+    """The file that the documentation shows is one, for a controller with its ports."""
+    page = (Path(__file__).parents[3] / "docs" / "controllers.md").read_text("utf-8")
+    file = tmp_path / "page.mapping.toml"
+    file.write_text(page.partition("```toml\n")[2].partition("```")[0], "utf-8")
+    names = ["Va", "Vdc", "Vdc_pu", "Ia", "Ipv", "Vref"]
+    inputs = [*(port(name) for name in names), port("V_abc", width=3), port("y", width=4)]
+    mapped = map_inputs(inputs, load_mapping(file), NOMINAL)
+    assert mapped.unmapped == ("y[0]", "y[1]", "y[2]")
+    assert map_outputs([port("ma"), port("Ea"), port("Pout", "W")], load_mapping(file), NOMINAL).recorded == (
+        "p_out_w",
+    )

@@ -1,0 +1,199 @@
+"""`controllers inspect | new | header`: projects that work as they are, and what is said of a controller."""
+
+import json
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pvlvrt_compliance.scenario.parameters import Parameters
+from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
+
+needs_gcc = pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is not installed")
+needs_pythonfmu = pytest.mark.skipif(
+    find_spec("pythonfmu") is None or find_spec("fmpy") is None, reason="pythonfmu or fmpy is not installed"
+)
+GATE = ("--profile", "iec61400-21", "--sag", "50%")
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory, program):
+    """Begin a project of a kind: ``project(kind) -> folder``."""
+
+    def project(kind):
+        folder = tmp_path_factory.mktemp("projects") / kind
+        ended = program("controllers", "new", "--kind", kind, folder)
+        assert (ended.status, ended.err) == (0, "")
+        assert {Path(line) for line in ended.out.splitlines()} == {p for p in folder.rglob("*") if p.is_file()}
+        return folder
+
+    return project
+
+
+@pytest.fixture(scope="module")
+def in_python(project):
+    """The project in Python."""
+    return project("python")
+
+
+@pytest.fixture(scope="module")
+def in_c(project):
+    """The project in C, built as its Makefile says, with warnings as errors."""
+    folder = project("c")
+    flags = "CFLAGS=-O2 -std=c99 -Wall -Wextra -Wpedantic -Werror -fPIC"
+    done = subprocess.run(["make", "-s", flags], cwd=folder, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def as_fmu(project):
+    """The project of an FMU, built as its Makefile says."""
+    folder = project("fmu")
+    code = f"import sys; sys.path[:] = {sys.path!r}; from pythonfmu.__main__ import cli_main; cli_main()"
+    (rule,) = (line for line in (folder / "Makefile").read_text().splitlines() if line.startswith("\tpythonfmu "))
+    command = [sys.executable, "-c", code, *rule.split()[1:]]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+def assert_gates(program, folder, spec, *arguments):
+    """The gate of a project is green, and red with a setting that asks for too little reactive power."""
+    green = program("--controller", spec, *GATE, *arguments, cwd=folder)
+    assert "PASS: 1 test; checks: 4 pass" in green.out, green
+    assert f"Controller: {spec} " in green.out
+    assert "called every 100 us; plant step 5 us (20 in a sample time)" in green.out
+    assert green.status == 0
+    red = program("--controller", spec, *GATE, "--set", "controller.plateau_power_pu=0.2", *arguments, cwd=folder)
+    assert red.status == 1
+    assert "fail: reactive_support" in red.out
+
+
+def test_project_in_python_gates(program, in_python):
+    """The Python controller passes all four checks of the three-phase 50 % sag as the README says."""
+    assert "controllers inspect controller.py:Controller" in (in_python / "README.md").read_text()
+    assert_gates(program, in_python, "controller.py:Controller")
+
+
+@needs_gcc
+def test_project_in_c_gates(program, in_c):
+    """So does the C controller, tied to the plant by the mapping file beside it."""
+    assert_gates(program, in_c, "./libcontroller.so")
+
+
+@needs_pythonfmu
+def test_project_of_an_fmu_gates(program, as_fmu):
+    """So does the FMU made from the Python controller."""
+    assert_gates(program, as_fmu, "./MyController.fmu")
+
+
+@needs_gcc
+@pytest.mark.parametrize("phases", ["abc", "c"])
+def test_controllers_in_python_and_c_are_the_same(in_python, in_c, phases):
+    """The two are one law: their waveforms agree within rounding."""
+    scenario = Scenario(sag=Sag(depth=0.7, phases=phases), duration_s=0.2, after_s=0.3)
+    specs = (f"{in_python / 'controller.py'}:Controller", str(in_c / "libcontroller.so"))
+    python, c = (ForeignSimulator(spec)(scenario, Parameters()) for spec in specs)
+    for name in ("i_a_a", "i_c_a", "v_dc_v", "q_ref_var", "p_ref_w"):
+        one, other = (waveforms.segments[0].channels[name] for waveforms in (python, c))
+        np.testing.assert_allclose(other, one, rtol=1e-6, atol=1e-6 * np.abs(one).max())
+
+
+def test_header_is_the_interface(command):
+    """The header that is printed declares what a controller exports."""
+    ended = command("controllers", "header")
+    assert (ended.status, ended.err) == (0, "")
+    for name in ("Model_GetInfo", "Model_CheckParameters", "Model_Initialize", "Model_Outputs", "Model_Terminate"):
+        assert name in ended.out
+
+
+def test_new_leaves_what_is_there(command, in_python):
+    """A project is never overwritten, not even in part."""
+    before = {p: p.read_bytes() for p in in_python.rglob("*") if p.is_file()}
+    ended = command("controllers", "new", in_python)
+    assert ended.status == 2
+    assert "there already, and left as they are" in ended.err
+    assert {p: p.read_bytes() for p in in_python.rglob("*") if p.is_file()} == before
+
+
+def test_new_refuses_an_unknown_kind(command, tmp_path):
+    """Kinds are named when one is not known."""
+    ended = command("controllers", "new", "--kind", "rust", tmp_path / "x")
+    assert ended.status == 2
+    assert "allowed are python, c, fmu" in ended.err
+    assert not (tmp_path / "x").exists()
+
+
+def test_inspect_for_programs(command, in_python):
+    """Everything that is shown is there as JSON, with the rates that will be used and the parameters as set."""
+    spec = f"{in_python / 'controller.py'}:Controller"
+    ended = command("controllers", "inspect", spec, "--json", "--set", "controller.dc_voltage_v=810")
+    found = json.loads(ended.out)
+    assert ended.status == 0
+    assert (found["kind"], found["sample_time_s"], found["plant_step_us"]) == ("python", 1e-4, pytest.approx(5.0))
+    assert (found["plant_steps_per_sample"], found["computation_delay_samples"]) == (20, 1)
+    (parameter,) = (p for p in found["parameters"] if p["name"] == "dc_voltage_v")
+    assert (parameter["value"], parameter["default"]) == (810.0, 807.0)
+    assert found["unmapped_inputs"] == found["missing_commands"] == []
+
+
+@needs_gcc
+def test_inspect_in_words(command, in_c):
+    """Ports with their units and what they are tied to, parameters with their ranges, sample time and plant step."""
+    ended = command("controllers", "inspect", in_c / "libcontroller.so")
+    assert ended.status == 0
+    assert "sample time 100 us: plant step 5 us, 20 steps in a sample time; recorded every 25 us" in ended.out
+    lines = [line.split() for line in ended.out.splitlines()]
+    assert ["Vdc", "V", "v_dc_v", "DC-link", "voltage"] in lines
+    assert ["ma", "m_a", "modulating", "signal:", "u_a", "=", "ma", "Vdc", "/", "2"] in lines
+    assert ["plateau_power_pu", "0.75", "pu", "0", "to", "1", "full", "reactive", "power"] in lines
+    assert ended.out.splitlines()[-1].startswith("ready to run")
+
+
+@needs_gcc
+def test_inspect_names_what_is_unmapped(command, in_c, tmp_path):
+    """Without its mapping file, what a name does not say is listed with the reason; a run says it, too."""
+    library = shutil.copy(in_c / "libcontroller.so", tmp_path)
+    ended = command("controllers", "inspect", library)
+    assert "(nothing); phase to neutral or line to line?" in ended.out
+    assert "still unmapped: inputs Vnom" in ended.out
+    mapping = tmp_path / "other.toml"
+    mapping.write_text(
+        '[inputs]\nVnom = "voltage_nominal_v"\nVa = {signal = "u_b_v", unit = "kV"}\n[outputs]\nma = {record = "x"}\n'
+    )
+    ended = command("controllers", "inspect", library, "--mapping", mapping)
+    assert "u_b_v" in ended.out
+    assert "cannot be run yet: no output gives m_a" in ended.out
+    ended = command("--controller", library, "--mapping", mapping, *GATE, "--output", tmp_path / "out")
+    assert ended.status == 2
+    assert "no output gives m_a. Tie them under [outputs] of a mapping file" in ended.err
+
+
+@needs_gcc
+def test_fixed_plant_step_that_does_not_fit_is_refused(command, in_c):
+    """So do inspection and run: the nearest possible steps are named."""
+    ended = command("controllers", "inspect", in_c / "libcontroller.so", "--set", "simulation.plant_step_us=3")
+    assert ended.status == 2
+    assert "3.0303 us (33 steps) or 2.94118 us (34 steps)" in ended.err
+
+
+def test_mapping_needs_a_controller_with_ports(command, in_python, tmp_path):
+    """A mapping file is for a controller of one's own that has ports; a Python class has none to tie."""
+    assert "it needs --controller" in command(*GATE, "--mapping", "x.toml").err
+    spec = f"{in_python / 'controller.py'}:Controller"
+    ended = command("controllers", "inspect", spec, "--mapping", tmp_path / "x.toml")
+    assert ended.status == 2
+    assert "--mapping does not go with it" in ended.err
+
+
+@pytest.mark.parametrize("name", ["inspect", "new", "header"])
+def test_help_of_each_command(command, name):
+    """Each has help with an example."""
+    assert "Example: pvlvrt-check controllers" in " ".join(command("controllers", name, "--help").out.split())
