@@ -28,9 +28,10 @@ from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.doors.base import DoorCall, Setting
 from pvlvrt_compliance.simulation.doors.library_door import LibraryDoor
-from pvlvrt_compliance.simulation.foreign_loop import COMPLETED, DoorTable, call, commanded, hold, put_signals
+from pvlvrt_compliance.simulation.exchange import DoorTable, call, commanded, hold, put_signals
 from pvlvrt_compliance.simulation.foreign_run import door_table
 from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
+from pvlvrt_compliance.simulation.loop import COMPLETED
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.simulation.translate import controller_params, plant_params, plant_tables, steady_state
 from pvlvrt_compliance.units import Nominal

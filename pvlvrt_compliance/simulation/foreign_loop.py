@@ -14,7 +14,6 @@ from pvlvrt_compliance.control.delays import DelayLines, acting, put
 from pvlvrt_compliance.control.hardware import Hardware, read
 from pvlvrt_compliance.kernel import cached_kernel, kernel
 from pvlvrt_compliance.plant.grid import source_at
-from pvlvrt_compliance.plant.inverter import K_PWM, limit_modulation
 from pvlvrt_compliance.plant.plant import (
     Observed,
     PlantParams,
@@ -22,42 +21,24 @@ from pvlvrt_compliance.plant.plant import (
     PlantTables,
     advance,
     as_at,
-    bridge,
     observe,
 )
 from pvlvrt_compliance.plant.protection import NO_TRIP, RelayState
-from pvlvrt_compliance.simulation.loop import COMPLETED, NOT_FINITE, PLANT_CHANNELS, Outcome, record_plant
-from pvlvrt_compliance.simulation.native_call import call_address
-from pvlvrt_compliance.simulation.ports import PortTable, gather, scatter
-from pvlvrt_compliance.simulation.recorder import RecordingPlan, next_row
-from pvlvrt_compliance.vectors import Phases, Rotation, phases_of, rotation, scaled, turned, vector_of
-
-CONTROLLER_FAILED, OUTPUT_NOT_FINITE, OUTPUT_OUT_OF_RANGE = range(2, 5)
-"""How a run ended, besides what `loop` has."""
-
-SIGNALS = (
-    *("time_s", "u_a_v", "u_b_v", "u_c_v", "i_a_a", "i_b_a", "i_c_a", "v_dc_v", "i_dc_a", "i_pv_a"),
-    *("m_a", "m_b", "m_c", "enabled", "connected", "irradiance_w_m2"),
-    *("p_set_w", "q_set_var", "frequency_nominal_hz", "apparent_power_nominal_va", "voltage_nominal_v"),
+from pvlvrt_compliance.simulation.exchange import (
+    COMMANDS,
+    DoorTable,
+    call,
+    commanded,
+    hold,
+    put_commands,
+    put_signals,
 )
-"""What a controller can be given, in the order of the signals that its input ports are mapped to.
-
-The loop writes those up to ``irradiance_w_m2``; the rest stays as it is given.
-"""
-
-_MESSAGE = 1  # what a controller's function returns that has something to say
-
-COMMANDS = ("m_a", "m_b", "m_c", "u_a_ref_v", "u_b_ref_v", "u_c_ref_v")
-"""What it can command: u_inv = m v_DC / 2, phase to the middle of the link, or that voltage itself (V)."""
+from pvlvrt_compliance.simulation.loop import COMPLETED, NOT_FINITE, PLANT_CHANNELS, Outcome, record_plant
+from pvlvrt_compliance.simulation.recorder import RecordingPlan, next_row
+from pvlvrt_compliance.vectors import Rotation, rotation, turned
 
 RECORDED = (*PLANT_CHANNELS, "m_alpha", "m_beta")
 """Channels of every record; signals of the controller's own follow."""
-
-LARGEST = {"m_a": 10.0, "u_a_ref_v": 1e5}
-"""Largest command of either kind that is taken for one (-, V)."""
-
-_M_MOST, _U_MOST = LARGEST["m_a"], LARGEST["u_a_ref_v"]
-_PER_HALF_LINK = 0.5 / K_PWM  # modulating signal of the paper per one of half the link's voltage
 
 
 class Timing(NamedTuple):
@@ -70,49 +51,6 @@ class Timing(NamedTuple):
     sample_time: float  # as the controller has it: what its clock goes by (s)
 
 
-class DoorTable(NamedTuple):
-    """Addresses and memory of an open door."""
-
-    address: int  # of the function that advances the controller by one sample
-    first_address: int  # of one called before all others; 0: none
-    hold_address: int  # of one called before it as long as the controller does not act yet; 0: none
-    note_address: int  # of one called after any has returned `_MESSAGE`; 0: that is a failure
-    argument: int  # address that all are called with
-    inputs: PortTable  # from `SIGNALS`
-    outputs: PortTable  # to `COMMANDS`, and further signals to record
-    in_volts: bool  # whether voltages are commanded
-    signals: NDArray[np.float64]  # shape (len(SIGNALS),)
-    commands: NDArray[np.float64]  # shape (len(COMMANDS) + further signals,)
-
-
-@kernel
-def put_phases(x: NDArray[np.float64], k: int, ab: complex, zero: float) -> None:
-    """Write the phases of a vector from an index on."""
-    phases = phases_of(ab)
-    x[k], x[k + 1], x[k + 2] = phases.a + zero, phases.b + zero, phases.c + zero
-
-
-@kernel
-def put_signals(
-    x: NDArray[np.float64],
-    t: float,
-    seen: Measured,
-    u_zero: float,
-    plant: PlantState,
-    m: complex,
-    G: float,
-    enabled: float,
-) -> None:
-    """Write what changes with time, in the order of `SIGNALS`; the sensors have no part in the bridge's current."""
-    x[0] = t
-    put_phases(x, 1, seen.u_g_ab, u_zero)
-    put_phases(x, 4, seen.i_ab, 0.0)
-    i_dc = bridge(limit_modulation(m), plant.i, plant.v_dc, plant.trip != NO_TRIP).i_dc
-    x[7], x[8], x[9] = seen.v_dc, i_dc, seen.i_pv
-    put_phases(x, 10, scaled(1 / _PER_HALF_LINK, m), 0.0)
-    x[13], x[14], x[15] = enabled, 1.0 if plant.closed else 0.0, 1000.0 * G
-
-
 @kernel
 def seen_at(n: int, plant: PlantState, y: Observed, hardware: Hardware | None) -> Measured:
     """What sensors make of the plant at call ``n``."""
@@ -120,84 +58,6 @@ def seen_at(n: int, plant: PlantState, y: Observed, hardware: Hardware | None) -
     if hardware is None:
         return seen
     return read(seen, y.u_zero, n, 0, hardware)
-
-
-@kernel
-def put_commands(x: NDArray[np.float64], m: complex, v_dc: float) -> None:
-    """Write the commands that a modulating signal stands for."""
-    put_phases(x, 0, scaled(1 / _PER_HALF_LINK, m), 0.0)
-    put_phases(x, 3, scaled(K_PWM * v_dc, m), 0.0)
-
-
-@kernel
-def fault_of(commands: NDArray[np.float64], in_volts: bool) -> int:
-    """What is wrong with the commands, or `COMPLETED`."""
-    begin, most = (3, _U_MOST) if in_volts else (0, _M_MOST)
-    for k in range(begin, begin + 3):
-        if not math.isfinite(commands[k]):
-            return OUTPUT_NOT_FINITE
-        if abs(commands[k]) > most:
-            return OUTPUT_OUT_OF_RANGE
-    return COMPLETED
-
-
-@kernel
-def is_well(door: DoorTable, address: int) -> bool:
-    """Call a function of the controller, and have what it says noted; whether all is well."""
-    answer = call_address(address, door.argument)
-    if answer == _MESSAGE and door.note_address != 0:
-        answer = call_address(door.note_address, door.argument)
-    well: bool = answer == 0
-    return well
-
-
-@kernel
-def call(door: DoorTable) -> int:
-    """Hand over the signals, let the controller work, take its commands."""
-    gather(door.signals, door.inputs)
-    if not is_well(door, door.address):
-        return CONTROLLER_FAILED
-    scatter(door.outputs, door.commands)
-    return fault_of(door.commands, door.in_volts)
-
-
-@kernel
-def hold(door: DoorTable, first: bool) -> int:
-    """Tell a controller that it does not act yet: its outputs are set to what acts in its place."""
-    gather(door.commands[: len(COMMANDS)], held_part(door.outputs))
-    gather(door.signals, door.inputs)
-    if first and door.first_address != 0 and not is_well(door, door.first_address):
-        return CONTROLLER_FAILED
-    if door.hold_address != 0 and not is_well(door, door.hold_address):
-        return CONTROLLER_FAILED
-    return COMPLETED
-
-
-@kernel
-def held_part(outputs: PortTable) -> PortTable:
-    """Outputs that command; those that are only recorded come after them."""
-    n = 0
-    while n < len(outputs.signal) and outputs.signal[n] < len(COMMANDS):
-        n += 1
-    return PortTable(
-        memory=outputs.memory,
-        kind=outputs.kind[:n],
-        place=outputs.place[:n],
-        signal=outputs.signal[:n],
-        gain=outputs.gain[:n],
-        offset=outputs.offset[:n],
-    )
-
-
-@kernel
-def commanded(door: DoorTable, v_dc: float) -> complex:
-    """Modulating signal of the paper, within the linear range; voltages go by the link's voltage (V) as sampled."""
-    c = door.commands
-    if door.in_volts:
-        m = scaled(1 / (K_PWM * max(v_dc, 1.0)), vector_of(Phases(a=c[3], b=c[4], c=c[5])))
-    else:
-        m = scaled(_PER_HALF_LINK, vector_of(Phases(a=c[0], b=c[1], c=c[2])))
-    return limit_modulation(m)
 
 
 @kernel

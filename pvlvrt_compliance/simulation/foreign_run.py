@@ -12,10 +12,11 @@ from pvlvrt_compliance.plant.plant import PlantTables
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
-from pvlvrt_compliance.simulation import foreign_loop
+from pvlvrt_compliance.simulation import exchange
 from pvlvrt_compliance.simulation.doors.base import Door, DoorCall, Setting, port_table, real_block
 from pvlvrt_compliance.simulation.electronics import delay_lines_of, hardware_of
-from pvlvrt_compliance.simulation.foreign_loop import COMMANDS, RECORDED, SIGNALS, DoorTable, Timing, run_foreign
+from pvlvrt_compliance.simulation.exchange import COMMANDS, SIGNALS, DoorTable
+from pvlvrt_compliance.simulation.foreign_loop import RECORDED, Timing, run_foreign
 from pvlvrt_compliance.simulation.loop import COMPLETED, NOT_FINITE, Outcome
 from pvlvrt_compliance.simulation.recorder import RecordingPlan, every_period
 from pvlvrt_compliance.simulation.sample_time import Rates, not_below, rates_of, with_rates
@@ -37,9 +38,9 @@ _MOST_NOISE = 2**20  # samples of sensor noise, after which it begins anew
 
 _REASONS: Mapping[int, str] = {
     NOT_FINITE: "a number of the plant stopped being finite",
-    foreign_loop.OUTPUT_NOT_FINITE: "a command of the controller is not a finite number",
-    foreign_loop.OUTPUT_OUT_OF_RANGE: "a command of the controller is out of range",
-    foreign_loop.CONTROLLER_FAILED: "the controller failed",
+    exchange.OUTPUT_NOT_FINITE: "a command of the controller is not a finite number",
+    exchange.OUTPUT_OUT_OF_RANGE: "a command of the controller is out of range",
+    exchange.CONTROLLER_FAILED: "the controller failed",
 }
 
 
@@ -151,13 +152,13 @@ def door_table(opened: DoorCall, nominal: Nominal, q_set_var: float) -> DoorTabl
 def _explained(outcome: Outcome, period_s: float, table: DoorTable, said: str) -> str:
     t = outcome.periods * period_s
     text = f"{_REASONS[outcome.status]} at {when(t)}"
-    if outcome.status in (foreign_loop.OUTPUT_NOT_FINITE, foreign_loop.OUTPUT_OUT_OF_RANGE):
+    if outcome.status in (exchange.OUTPUT_NOT_FINITE, exchange.OUTPUT_OUT_OF_RANGE):
         begin = 3 if table.in_volts else 0
         given = zip(COMMANDS[begin : begin + 3], table.commands[begin : begin + 3].tolist(), strict=True)
         text += f": {', '.join(f'{name} = {value:g}' for name, value in given)}"
-        if outcome.status == foreign_loop.OUTPUT_OUT_OF_RANGE:
-            text += f" (at most {foreign_loop.LARGEST[COMMANDS[begin]]:g})"
-    elif outcome.status == foreign_loop.CONTROLLER_FAILED:
+        if outcome.status == exchange.OUTPUT_OUT_OF_RANGE:
+            text += f" (at most {exchange.LARGEST[COMMANDS[begin]]:g})"
+    elif outcome.status == exchange.CONTROLLER_FAILED:
         text += f": {said}" if said else ""
     return text
 

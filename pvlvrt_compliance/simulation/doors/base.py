@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.errors import UsageError
-from pvlvrt_compliance.simulation.foreign_loop import COMMANDS, SIGNALS
+from pvlvrt_compliance.simulation.exchange import COMMANDS, SIGNALS
 from pvlvrt_compliance.simulation.ports import REAL64, Memory, PortTable
 from pvlvrt_compliance.units import Nominal
 

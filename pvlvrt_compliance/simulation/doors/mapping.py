@@ -18,7 +18,8 @@ from pvlvrt_compliance.simulation.doors.mapping_file import (
 from pvlvrt_compliance.simulation.doors.port_names import QUANTITIES, Guess, guess_input, guess_output
 from pvlvrt_compliance.simulation.doors.port_ties import Constant, Mapped, RawPort, Side, Slot, Tie, tied
 from pvlvrt_compliance.simulation.doors.port_units import Bases, Scale, scale_of
-from pvlvrt_compliance.simulation.foreign_loop import COMMANDS, RECORDED, SIGNALS
+from pvlvrt_compliance.simulation.exchange import COMMANDS, SIGNALS
+from pvlvrt_compliance.simulation.foreign_loop import RECORDED
 from pvlvrt_compliance.units import Nominal
 
 __all__ = ["Constant", "Mapped", "MappingFile", "RawPort", "check_commands", "load_mapping", "map_inputs"]

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from pvlvrt_compliance.simulation.foreign_loop import COMMANDS, SIGNALS
+from pvlvrt_compliance.simulation.exchange import COMMANDS, SIGNALS
 
 PHASES = "abc"
 

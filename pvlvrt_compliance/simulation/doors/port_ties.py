@@ -8,7 +8,7 @@ from pvlvrt_compliance.errors import did_you_mean
 from pvlvrt_compliance.simulation.doors.base import ITEM_SIZES, DoorError, Element, Port
 from pvlvrt_compliance.simulation.doors.mapping_file import MappingFile, refusal
 from pvlvrt_compliance.simulation.doors.port_names import Guess
-from pvlvrt_compliance.simulation.foreign_loop import COMMANDS
+from pvlvrt_compliance.simulation.exchange import COMMANDS
 from pvlvrt_compliance.simulation.ports import REAL64
 
 _INDEXED = re.compile(r"(.+)\[(\d+)\]")

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, FiniteFloat, ValidationError
 
 from pvlvrt_compliance.simulation.doors.base import Description, DoorError, ParameterInfo
-from pvlvrt_compliance.simulation.foreign_loop import COMMANDS, SIGNALS
+from pvlvrt_compliance.simulation.exchange import COMMANDS, SIGNALS
 from pvlvrt_compliance.waveforms.container import unit_of
 
 PROTOCOL, VERSION = "pvlvrt-check", 1

@@ -28,7 +28,8 @@ from pvlvrt_compliance.simulation.doors.base import (
     real_block,
     signal_index,
 )
-from pvlvrt_compliance.simulation.foreign_loop import COMMANDS, RECORDED, SIGNALS
+from pvlvrt_compliance.simulation.exchange import COMMANDS, SIGNALS
+from pvlvrt_compliance.simulation.foreign_loop import RECORDED
 from pvlvrt_compliance.simulation.native_call import FUNCTION
 from pvlvrt_compliance.waveforms.container import unit_of
 

@@ -20,7 +20,7 @@ from pvlvrt_compliance.simulation.doors.mapping import (
     set_constants,
 )
 from pvlvrt_compliance.simulation.doors.port_names import guess_input
-from pvlvrt_compliance.simulation.foreign_loop import COMMANDS, SIGNALS
+from pvlvrt_compliance.simulation.exchange import COMMANDS, SIGNALS
 from pvlvrt_compliance.simulation.ports import INT16, REAL32, REAL64
 from pvlvrt_compliance.units import Nominal
 

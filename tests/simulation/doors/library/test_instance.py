@@ -11,7 +11,7 @@ from pvlvrt_compliance.simulation.doors.library_file import Library
 from pvlvrt_compliance.simulation.doors.library_info import info_of, settings_of
 from pvlvrt_compliance.simulation.doors.library_instance import LibraryInstance
 from pvlvrt_compliance.simulation.doors.library_layout import ModelInfo
-from pvlvrt_compliance.simulation.foreign_loop import SIGNALS
+from pvlvrt_compliance.simulation.exchange import SIGNALS
 from pvlvrt_compliance.simulation.native_call import FUNCTION
 from pvlvrt_compliance.simulation.ports import gather, number_at, put_number
 from pvlvrt_compliance.units import Nominal
