@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from twin import SCENARIOS, TOLERANCE, Arguments, Twin, arguments_of, compiler, differences
+from agreement import TOLERANCE, differences
+from twin import SCENARIOS, Arguments, Twin, arguments_of, compiler
 
 from pvlvrt_compliance.simulation import loop
 

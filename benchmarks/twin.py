@@ -26,8 +26,6 @@ from pvlvrt_compliance.simulation import loop
 from pvlvrt_compliance.simulation.recorder import RecordingPlan
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.space_vectors import SQRT2_3, SQRT3_2
-from pvlvrt_compliance.units import Nominal
-from pvlvrt_compliance.waveforms.container import unit_of
 
 SCENARIOS: Mapping[str, Scenario] = {
     "three-phase 90 %": Scenario(sag=Sag(depth=0.9), duration_s=0.309),
@@ -39,9 +37,6 @@ SCENARIOS: Mapping[str, Scenario] = {
     "three-phase 90 % at SCR 5": Scenario(sag=Sag(depth=0.9), duration_s=0.309, scr=5.0),
 }
 """Runs on which twin and package must agree: faults, the search for the maximum power, a trip, a weak grid."""
-
-TOLERANCE = 1e-6
-"""Largest difference of two waveforms, of nominal."""
 
 _FOLDER = Path(__file__).resolve().parent
 CONTROLLER = _FOLDER.parent / "examples" / "bundled-controller-c"
@@ -289,22 +284,6 @@ class Twin:
         """Run the twin; fills the samples."""
         outcome: loop.Outcome = _unpacked(loop.Outcome, self.prepare(arguments)())
         return outcome
-
-
-def scale_of(channel: str, nominal: Nominal) -> float:
-    """What one nominal is in the unit of a channel; 1 where there is no nominal."""
-    if channel in {"v_dc_v", "v_dc_ref_v"}:
-        return 1000.0
-    rated = nominal.apparent_power_va
-    by_unit = {"V": nominal.phase_voltage_peak_v, "A": nominal.phase_current_peak_a, "W": rated, "var": rated}
-    return by_unit.get(unit_of(channel), 1.0)
-
-
-def differences(mine: NDArray[np.float64], theirs: NDArray[np.float64]) -> dict[str, float]:
-    """Largest difference of two records in every channel, of nominal; infinite where a number is missing."""
-    nominal = Nominal()
-    apart = np.nan_to_num(np.abs(mine - theirs).max(axis=0), nan=np.inf)
-    return {name: float(x) / scale_of(name, nominal) for name, x in zip(loop.CHANNELS, apart, strict=True)}
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """The inverter stays connected through jumps of the voltage's angle, and its active power comes back."""
 
 import math
+from itertools import zip_longest
 from typing import NamedTuple
 
 import numpy as np
@@ -81,6 +82,7 @@ def jump_at(evidence: Evidence, at_s: float) -> Jump:
     _, after_s = between_steps_s(evidence, at_s)
     others = [t for t in angle_steps_s(evidence.scenario) if t != at_s]
     alone = all(abs(t - at_s) > 2 * cycle_s for t in others)
+    alone = alone and _is_steady(evidence, at_s - 2 * cycle_s, at_s + 2 * cycle_s)
     if alone and at_s - before_s > 2 * cycle_s and after_s - at_s > cycle_s:
         before = evidence.t_s[max(int(np.searchsorted(evidence.t_s, at_s - 1e-9)) - 1, 0)]  # the last sample
         first, last, then = (_at(phasors, evidence, t) for t in (before - cycle_s, before, before + 2 * cycle_s))
@@ -89,6 +91,14 @@ def jump_at(evidence: Evidence, at_s: float) -> Jump:
         if math.isfinite(jump.positive_deg) and math.isfinite(jump.phase_deg):
             return jump
     return _asked(evidence, at_s)
+
+
+def _is_steady(evidence: Evidence, begin_s: float, end_s: float) -> bool:
+    """Whether the frequency asked for stays the same: what it moves by would be taken for a jump of the angle."""
+    table = entries(evidence.scenario)
+    inside = [entry for entry, after in zip_longest(table, table[1:]) if after is None or after.t_s > begin_s]
+    seen = [entry for entry in inside if entry.t_s <= end_s]
+    return len({entry.frequency_hz for entry in seen}) == 1 and not any(entry.rocof_hz_s for entry in seen)
 
 
 def _asked(evidence: Evidence, at_s: float) -> Jump:

@@ -10,15 +10,25 @@ import pytest
 _BENCHMARKS = Path(__file__).resolve().parents[2] / "benchmarks"
 
 
-@pytest.fixture(scope="session")
-def twin_module() -> ModuleType:
-    """Module that builds and calls the twin."""
-    spec = importlib.util.spec_from_file_location("pvlvrt_benchmark_twin", _BENCHMARKS / "twin.py")
+def _script(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(f"pvlvrt_benchmark_{name}", _BENCHMARKS / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+@pytest.fixture(scope="session")
+def twin_module() -> ModuleType:
+    """Module that builds and calls the twin."""
+    return _script("twin")
+
+
+@pytest.fixture(scope="session")
+def agreement() -> ModuleType:
+    """Module that compares two records."""
+    return _script("agreement")
 
 
 @pytest.fixture(scope="session")

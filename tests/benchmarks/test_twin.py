@@ -18,31 +18,33 @@ from pvlvrt_compliance.simulation import loop
         "three-phase 90 % at SCR 5",
     ],
 )
-def test_twin_gives_the_waveforms_of_the_package(twin_module: ModuleType, twin: Any, name: str) -> None:
+def test_twin_gives_the_waveforms_of_the_package(
+    twin_module: ModuleType, agreement: ModuleType, twin: Any, name: str
+) -> None:
     """Every channel of the C program's record equals the package's, and both end alike."""
     mine, theirs = (twin_module.arguments_of(twin_module.SCENARIOS[name]) for _ in range(2))
     outcome, other = loop.run(*mine), twin.run(theirs)
     assert (outcome.status, outcome.periods, outcome.plant.trip) == (other.status, other.periods, other.plant.trip)
-    apart = twin_module.differences(mine.samples, theirs.samples)
-    assert {channel: x for channel, x in apart.items() if x > twin_module.TOLERANCE} == {}
+    apart = agreement.differences(mine.samples, theirs.samples)
+    assert {channel: x for channel, x in apart.items() if x > agreement.TOLERANCE} == {}
 
 
 @pytest.mark.parametrize(
     ("channel", "nominal"),
     [("u_b_v", math.sqrt(2) * 230), ("i_c_a", math.sqrt(2) * 500e3 / 690), ("v_dc_v", 1e3), ("p_ref_w", 500e3)],
 )
-def test_difference_of_one_sample_is_noticed(twin_module: ModuleType, channel: str, nominal: float) -> None:
+def test_difference_of_one_sample_is_noticed(agreement: ModuleType, channel: str, nominal: float) -> None:
     """One sample that is off by a part of nominal shows as that part, in its channel only."""
     record = np.ones((5, len(loop.CHANNELS)))
     other = record.copy()
     other[3, loop.CHANNELS.index(channel)] += 1e-3 * nominal
-    apart = twin_module.differences(record, other)
+    apart = agreement.differences(record, other)
     assert apart.pop(channel) == pytest.approx(1e-3)
     assert set(apart.values()) == {0.0}
 
 
-def test_sample_that_nobody_wrote_is_noticed(twin_module: ModuleType) -> None:
+def test_sample_that_nobody_wrote_is_noticed(agreement: ModuleType) -> None:
     """A sample that is not a number counts as an infinite difference."""
     record = np.ones((5, len(loop.CHANNELS)))
     record[2, 0] = math.nan
-    assert twin_module.differences(record, record)["u_a_v"] == math.inf
+    assert agreement.differences(record, record)["u_a_v"] == math.inf

@@ -80,3 +80,13 @@ def test_instants_of_jumps_are_those_of_the_timeline(bench, profile_with, t_s, l
     sag = {"kind": "sag", "t_s": t_s, "duration_s": lasts_s, "sag": Sag(depth=0.0, phases="a", angle_deg=30)}
     made = bench(depth=0, duration_s=1.0, profile=profile_with(KIND, DEMAND), scenario={"events": [sag]}, p_sag_kw=500)
     assert made.check(KIND).status is Status.PASS
+
+
+def test_a_jump_as_the_frequency_begins_to_move(bench, profile_with):
+    """What a ramp of the frequency turns in the cycles of the measurement is no part of the jump."""
+    ramp = {"kind": "frequency_ramp", "t_s": 0.2, "rate_hz_s": 2.0, "duration_s": 0.5}
+    events = [{"kind": "phase_jump", "t_s": 0.2, "angle_deg": 20}, ramp]
+    profile = profile_with(KIND, DEMAND)
+    check = bench(depth=0, duration_s=1.0, profile=profile, scenario={"events": events}, p_sag_kw=500).check(KIND)
+    assert check.status is Status.PASS, check.message
+    assert "20.0 deg" in check.message
