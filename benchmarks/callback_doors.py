@@ -1,9 +1,9 @@
-"""What an FMU, and another program, cost as a controller: microseconds a control step around their own code.
+"""What a Python class, an FMU and another program cost as a controller: microseconds a control step.
 
-    python benchmarks/fmu_door.py [--calls 20000] [--repeats 7]
+    python benchmarks/callback_doors.py [--calls 20000] [--repeats 7]
 
-Needs the extra fmi and gcc. The FMUs hold what modulates, which costs them next to
-nothing: what is measured is the door, called by compiled code as the loop over time calls it. The best of the repeats.
+Needs the extra fmi and gcc. Class and FMUs hold what modulates, which costs them next to nothing: what is measured is
+the door, called by compiled code as the loop over time calls it. The best of the repeats.
 """
 
 import argparse
@@ -72,6 +72,25 @@ def fmu(folder: Path, version: int) -> str:
     return str(packed(folder, description(version), compiled(folder, version), place))
 
 
+CLASS = """
+class Holding:
+    sample_time_s = 40.9568e-6
+
+    def reset(self, nominal):
+        pass
+
+    def step(self, measured):
+        return measured.m_a, measured.m_b, measured.m_c
+"""
+
+
+def python_class(folder: Path) -> str:
+    """Class that holds what modulates."""
+    file = folder / "holding.py"
+    file.write_text(CLASS, "utf-8")
+    return f"{file}:Holding"
+
+
 def c_program(folder: Path) -> str:
     """Give the example in C, compiled."""
     program = folder / "controller"
@@ -90,6 +109,7 @@ def main() -> None:
         folder = Path(name)
         python = f'stdio:"{sys.executable}" "{ROOT / "examples" / "program-python" / "controller.py"}"'
         rows: list[tuple[str, Callable[[], Any]]] = [
+            ("Python class (at most 15)", lambda: python_class(folder)),
             ("FMI 2, an FMU in C (at most 25)", lambda: fmu(folder / "fmi2", 2)),
             ("FMI 3, an FMU in C (at most 25)", lambda: fmu(folder / "fmi3", 3)),
             ("program in C, binary, with its controller", lambda: c_program(folder)),
