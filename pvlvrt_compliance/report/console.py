@@ -28,7 +28,7 @@ _STYLE = {
 
 
 _MANY_TESTS = 60
-_SHORT_CLAUSE = 24  # characters
+_SHORT_NAME = 16  # characters of a check's name that leave room for its clause
 
 
 def render(results: Results) -> RenderableType:
@@ -87,22 +87,29 @@ def _counts(statuses: Iterable[Status]) -> list[Text]:
 
 
 def verdict_table(results: Results) -> Table:
-    """Table of all verdicts; with more than one test, each test has a line of its own above its checks."""
+    """Table of all verdicts; of several tests, each has a line of its own above its checks, and each profile one.
+
+    Beside long names of checks 80 columns have no room for clauses; the report has them.
+    """
     several = len(results.tests) > 1
+    with_clause = all(len(check.check) <= _SHORT_NAME for test in results.tests for check in verdicts(test))
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=0)
     table.add_column("test / check" if several else "check", no_wrap=True)
     for heading in ("measured", "limit", "margin"):
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("verdict", no_wrap=True)
-    longest = max((len(check.clause) for test in results.tests for check in verdicts(test)), default=0)
-    # A few words may stand below one another; a whole sentence in a narrow column helps nobody, the report has it.
-    table.add_column("clause", overflow="fold", min_width=6, no_wrap=longest > _SHORT_CLAUSE)
+    if with_clause:
+        table.add_column("clause", overflow="fold", min_width=6)
     table.add_column("confidence", no_wrap=True)
-    for test in results.tests:
-        if several:
-            title = Text(test.id, style="bold")
-            table.add_row(title, "", "", "", _verdict(test.status), Text(test.clause), Text(test.confidence))
-        _add_checks(table, test, indent="  " if several else "")
+    for profile, tests in _by_profile(results):
+        if len(results.profiles) > 1:
+            table.add_row(Text(profile, style="bold underline"))
+        for test in tests:
+            if several:
+                clause = (Text(test.clause),) if with_clause else ()
+                title = Text(test.id, style="bold")
+                table.add_row(title, "", "", "", _verdict(test.status), *clause, Text(test.confidence))
+            _add_checks(table, test, "  " if several else "", with_clause)
     return table
 
 
@@ -114,14 +121,15 @@ def summary_line(results: Results) -> str:
     return f"{head}; checks: {kinds}" if kinds else head
 
 
-def _add_checks(table: Table, test: TestResult, indent: str) -> None:
+def _add_checks(table: Table, test: TestResult, indent: str, with_clause: bool) -> None:
     for check in verdicts(test):
         numbers = spell.row(check)
         # The unit once a line: at 80 columns there is no room for it three times.
         limit, margin = (text.removesuffix(f" {check.unit}") for text in (numbers.limit, numbers.margin))
         cells = (indent + check.check, numbers.measured, limit, margin)
         # Text, because a str would be read as markup and "[0.7, 0.3]" would vanish.
-        table.add_row(*map(Text, cells), _verdict(check.status), Text(check.clause), Text(check.confidence))
+        clause = (Text(check.clause),) if with_clause else ()
+        table.add_row(*map(Text, cells), _verdict(check.status), *clause, Text(check.confidence))
 
 
 def _verdict(status: Status) -> Text:

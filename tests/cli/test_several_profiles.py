@@ -119,3 +119,14 @@ def test_waveforms_of_an_unknown_kind(command):
     """What is allowed is named."""
     ended = command("--profile", "iec61400-21", "--sag", "50%", "--waveforms", "some")
     assert (ended.status, "all, failed, none" in ended.err) == (2, True)
+
+
+def test_the_table_keeps_its_numbers_at_80_columns(command, tmp_path):
+    """Clauses of a grid code give way, numbers do not; the two profiles are told apart."""
+    ended = command("--profile", "iec61400-21", "--profile", "es-nts-631-lt110kv", "--sag", "50%", "--output", tmp_path)
+    table = ended.out[: ended.out.index("not applicable: ")]
+    assert {"iec61400-21", "es-nts-631-lt110kv"} <= {line.strip() for line in table.splitlines()}
+    assert "…" not in table
+    assert "250.0 kvar 250.0" in table
+    assert "0.017 s 0.050 +0.033 pass" in table
+    assert max(map(len, table.splitlines())) <= 80
