@@ -42,6 +42,10 @@ class MeasurementError(PvlvrtError):
     """A quantity cannot be measured on the waveforms given (that check becomes `not_evaluated`)."""
 
 
+class CompiledCodeWarning(UserWarning):
+    """Compiled code is not kept, or what was kept is damaged: that costs time and changes no verdict."""
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return ``'; did you mean "x" or "y"?'`` for the near misses of a word, or an empty string."""
     near = [f'"{match}"' for match in difflib.get_close_matches(word, list(known), n=3, cutoff=0.6)]

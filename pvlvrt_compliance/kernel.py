@@ -1,10 +1,5 @@
-"""The one decorator for compiled code, and where its cache lives.
+"""The one decorator for compiled code, and where its cache lives (what it goes by: `compiled.sources`)."""
 
-numba's cache key sees the file of the compiled function only, not the files of the functions it calls. The cache
-folder is therefore named after a digest of every kernel source, so that an edit anywhere compiles anew.
-"""
-
-import hashlib
 import os
 import types
 from collections.abc import Callable
@@ -16,36 +11,32 @@ import numba
 import numpy as np
 import platformdirs
 
+from pvlvrt_compliance.compiled.keeping import KernelCache
+from pvlvrt_compliance.compiled.sources import Sources
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 # A division by zero gives inf, which the loop finds, instead of a check and a branch at every division.
 _njit: Any = partial(numba.njit, error_model="numpy")
 
-_PACKAGE = Path(__file__).resolve().parent
 _blocks: set[types.FunctionType] = set()  # the Python of every kernel
 
-_KERNEL_FOLDERS = ("control", "plant", "simulation")
-_WITHOUT_KERNELS = _PACKAGE / "simulation" / "doors"  # what opens a user's controller is plain Python
-_KERNEL_FILES = ("kernel.py", "space_vectors.py", "vectors.py", "sogi.py")
+_sources: dict[types.FunctionType, Sources] = {}  # of what Python calls
 
 
-@cache
-def kernel_digest() -> str:
-    """Digest of all sources that compiled code is made from (16 hexadecimal digits)."""
-    digest = hashlib.sha256(f"numba {numba.__version__}".encode())
-    files = [_PACKAGE / name for name in _KERNEL_FILES]
-    for folder in _KERNEL_FOLDERS:
-        found = (_PACKAGE / folder).rglob("*.py")
-        files += sorted(file for file in found if _WITHOUT_KERNELS not in file.parents)
-    for file in files:
-        digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
-    return digest.hexdigest()[:16]
+def cache_root() -> Path | None:
+    """Folder of all compiled code; ``NUMBA_CACHE_DIR`` moves it. None without either that or a home."""
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    try:
+        root = Path(given or platformdirs.user_cache_dir("pvlvrt-compliance", appauthor=False))
+    except RuntimeError:  # no HOME, and a user that the system does not know
+        return None
+    return root.absolute() if given or root.is_absolute() else None
 
 
-def cache_folder() -> Path:
-    """Folder of the compiled code of this version of the sources; ``NUMBA_CACHE_DIR`` moves it."""
-    root = os.environ.get("NUMBA_CACHE_DIR") or platformdirs.user_cache_dir("pvlvrt-compliance", appauthor=False)
-    return Path(root) / f"kernels-{kernel_digest()}"
+def sources_of(function: Callable[..., Any]) -> Sources:
+    """Sources of what `cached_kernel` has compiled, or will."""
+    return _sources[cast(types.FunctionType, plain(function))]
 
 
 def kernel(function: F) -> F:
@@ -137,14 +128,9 @@ def cached_kernel(function: F) -> F:
 
     The global interpreter lock is released while it runs.
     """
-    # numba reads the folder when the function is decorated; other users of numba in this process keep theirs.
-    config: Any = numba.config
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(cache_folder())
-    try:
-        compiled: F = _njit(function, cache=True, nogil=True, no_cfunc_wrapper=True)
-    except RuntimeError:  # no writable folder anywhere: compile every time rather than not at all
-        compiled = _njit(function, nogil=True, no_cfunc_wrapper=True)
-    finally:
-        config.CACHE_DIR = before
-    return compiled
+    compiled: Any = _njit(function, nogil=True, no_cfunc_wrapper=True)
+    source, root = cast(types.FunctionType, function), cache_root()
+    _sources[source] = Sources(source, __name__, root)
+    if compiled is not function:  # or compilation is turned off
+        compiled._cache = KernelCache(source, _sources[source], root)
+    return cast(F, compiled)

@@ -24,7 +24,8 @@ ALLOWED = {
     "resources": {"errors"},
     "positions": set(),
     "problems": {"errors"},
-    "kernel": set(),
+    "compiled": {"errors"},
+    "kernel": {"compiled"},
     "controllers": {"units"},  # what a user's own file imports
     "vectors": {"kernel", "space_vectors"},
     "sogi": {"kernel", "vectors"},
@@ -35,7 +36,7 @@ ALLOWED = {
     "checks": COMMON | {"profile", "scenario", "measure", "waveforms"},
     "control": COMMON | KERNELS,
     "plant": COMMON | KERNELS,
-    "simulation": COMMON | KERNELS | {"controllers", "plant", "control", "scenario", "waveforms"},
+    "simulation": COMMON | KERNELS | {"compiled", "controllers", "plant", "control", "scenario", "waveforms"},
     # The kernel's digest is part of the provenance of a run.
     "study": COMMON | {"kernel", "profile", "scenario", "simulation", "checks", "waveforms"},
     "report": COMMON | {"checks.results", "waveforms", "profile", "measure"},
@@ -43,7 +44,7 @@ ALLOWED = {
     "templates": set(),  # projects of users, which stand alone
     "__main__": {"cli"},
 }
-NUMBA = {"kernel", "plant", "control", "simulation"}
+NUMBA = {"compiled", "kernel", "plant", "control", "simulation"}
 
 
 def modules() -> list[Path]:

@@ -1,9 +1,6 @@
 import os
-import re
-import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,74 +8,29 @@ import pytest
 from pvlvrt_compliance import kernel
 from pvlvrt_compliance.plant.inverter import limit_modulation
 
-PACKAGE = Path(kernel.__file__).parent
-SOURCES = ["kernel.py", "space_vectors.py", "vectors.py", "sogi.py"] + [
-    path.relative_to(PACKAGE).as_posix()
-    for folder in ("control", "plant", "simulation")
-    for path in sorted((PACKAGE / folder).rglob("*.py"))
-]
-
-
-def digest_of(package: Path, monkeypatch) -> str:
-    """Digest of a copy of the package's sources."""
-    monkeypatch.setattr(kernel, "_PACKAGE", package)
-    kernel.kernel_digest.cache_clear()
-    return kernel.kernel_digest()
-
-
-@pytest.fixture
-def copied(tmp_path):
-    """A copy of the package's sources; the digest of the real ones is computed anew afterwards."""
-    package = tmp_path / "copied"
-    shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
-    yield package
-    kernel.kernel_digest.cache_clear()
-
-
-def test_an_edit_of_any_kernel_source_moves_the_cache(copied, monkeypatch):
-    """Every file that compiled code is made from is part of the cache folder's name."""
-    seen = {digest_of(copied, monkeypatch)}
-    for n, name in enumerate(SOURCES, start=1):
-        file = copied / name
-        file.write_text(file.read_text(encoding="utf-8") + "\n# edited\n", encoding="utf-8")
-        seen.add(digest_of(copied, monkeypatch))
-        assert len(seen) == n + 1, name
-
-
-def test_other_files_leave_the_cache_where_it_is(copied, monkeypatch):
-    """Editing a report or a check does not compile anew."""
-    before = digest_of(copied, monkeypatch)
-    (copied / "errors.py").write_text("", encoding="utf-8")
-    (copied / "checks" / "added.py").write_text("", encoding="utf-8")
-    assert digest_of(copied, monkeypatch) == before
-
-
-def test_all_kernel_modules_are_in_the_digest():
-    """No module uses a decorator of compiled code without being a source of the digest."""
-    decorated = re.compile(r"^@(cached_)?kernel\b", re.MULTILINE)
-    users = {
-        path.relative_to(PACKAGE).as_posix()
-        for path in PACKAGE.rglob("*.py")
-        if decorated.search(path.read_text(encoding="utf-8"))
-    }
-    assert "control/lvrt.py" in users
-    assert users <= set(SOURCES)
-
 
 def test_the_cache_moves_with_the_environment(monkeypatch, tmp_path):
-    """NUMBA_CACHE_DIR says where compiled code is kept; the folder within has the digest's name."""
+    """NUMBA_CACHE_DIR says where compiled code is kept, else the user's folder for such things."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    assert kernel.cache_folder() == tmp_path / f"kernels-{kernel.kernel_digest()}"
+    assert kernel.cache_root() == tmp_path
     monkeypatch.delenv("NUMBA_CACHE_DIR")
-    assert tmp_path not in kernel.cache_folder().parents
-    assert kernel.cache_folder().name == f"kernels-{kernel.kernel_digest()}"
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
+    assert kernel.cache_root() == tmp_path / "home" / "pvlvrt-compliance"
+
+
+def test_without_a_home_there_is_no_cache(monkeypatch):
+    """A user that the system does not know, without HOME, has no folder; none is made in the current one."""
+    for name in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(os, "getuid", lambda: 123456)
+    assert kernel.cache_root() is None
 
 
 def test_the_python_behind_a_kernel():
     """`plain` gives the function that was decorated, and leaves a function that was not as it is."""
     assert kernel.plain(limit_modulation).__name__ == "limit_modulation"
     assert not hasattr(kernel.plain(limit_modulation), "py_func")
-    assert kernel.plain(digest_of) is digest_of
+    assert kernel.plain(test_without_a_home_there_is_no_cache) is test_without_a_home_there_is_no_cache
 
 
 SHORT_RUN = """

@@ -10,6 +10,7 @@ import typer
 from pvlvrt_compliance.cli import controllers, profiles
 from pvlvrt_compliance.cli.check import check
 from pvlvrt_compliance.cli.schema import schema
+from pvlvrt_compliance.compiled.notes import tell_in_lines
 from pvlvrt_compliance.errors import PvlvrtError, UsageError
 
 USAGE_STATUS = 2
@@ -58,6 +59,7 @@ def run(arguments: Sequence[str]) -> int:
 
 def main() -> None:
     """Run as a program."""
+    tell_in_lines()
     try:
         status = run(sys.argv[1:])
     except Exception:

@@ -9,7 +9,6 @@ from typing import Any
 
 from pvlvrt_compliance import __version__
 from pvlvrt_compliance.errors import UsageError
-from pvlvrt_compliance.kernel import kernel_digest
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.scenario.parameters import Parameters
 
@@ -49,7 +48,7 @@ def provenance(
         "command": _quoted(command),
         "profile": ", ".join(profile.id for profile in profiles),
         "profile_digest": ", ".join(profile.digest for profile in profiles),
-        **(controller or {"controller": "bundled", "controller_digest": kernel_digest()}),
+        **(controller or _bundled()),
         "versions": {
             "pvlvrt-compliance": __version__,
             "python": platform.python_version(),
@@ -57,6 +56,14 @@ def provenance(
         },
         "parameters": parameters.model_dump(mode="json"),
     }
+
+
+def _bundled() -> dict[str, str]:
+    """Name and digest of the bundled controller: of the files that it is made from, its plant and loop included."""
+    from pvlvrt_compliance.kernel import sources_of
+    from pvlvrt_compliance.simulation.loop import run
+
+    return {"controller": "bundled", "controller_digest": sources_of(run).digest}
 
 
 def _quoted(command: Sequence[str]) -> str:

@@ -17,6 +17,7 @@ from typing import IO, Any, NoReturn
 
 import numpy as np
 
+from pvlvrt_compliance.compiled.notes import tell_in_lines
 from pvlvrt_compliance.errors import PvlvrtError, SimulationError
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
@@ -55,6 +56,7 @@ def main() -> None:
     os.dup2(2, 1)  # whatever is printed from here on is no answer
     from pvlvrt_compliance.simulation.foreign_run import warm_up
 
+    tell_in_lines()
     warm_up()
     _say(answers, "ready")
     while line := jobs.readline():

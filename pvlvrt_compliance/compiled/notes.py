@@ -1,0 +1,43 @@
+"""What there is to say of the folder of compiled code: warnings, which change no verdict."""
+
+import warnings
+from pathlib import Path
+
+from pvlvrt_compliance.compiled.checked_file import throw_away
+from pvlvrt_compliance.errors import CompiledCodeWarning
+
+
+def discard(file: Path, why: object) -> None:
+    """Throw a damaged file away and say so."""
+    throw_away(file)
+    _say_once("damaged", f"{file}: damaged ({why}): thrown away and made anew")
+
+
+def say_not_kept(why: object) -> None:
+    """Say that every run compiles anew."""
+    _say_once("not kept", f"compiled code is not kept, so the next run compiles it anew: {why}")
+
+
+_said: set[str] = set()
+
+
+def _say_once(kind: str, text: str) -> None:
+    """Warn, once a process for each kind: where one file is bad others often are, and every kernel lacks the folder."""
+    if kind not in _said:
+        _said.add(kind)
+        warnings.warn(text, CompiledCodeWarning, stacklevel=2)
+
+
+def tell_in_lines() -> None:
+    """Have these warnings, and no others, come as a line each of the command, whatever Python's options say of them."""
+    warnings.filterwarnings("always", category=CompiledCodeWarning)
+    others = warnings.formatwarning
+
+    def formatted(
+        message: Warning | str, category: type[Warning], filename: str, lineno: int, line: str | None = None
+    ) -> str:
+        if issubclass(category, CompiledCodeWarning):
+            return f"pvlvrt-check: {message}\n"
+        return others(message, category, filename, lineno, line)
+
+    warnings.formatwarning = formatted
