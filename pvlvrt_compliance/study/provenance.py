@@ -12,6 +12,7 @@ from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.kernel import kernel_digest
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.scenario.parameters import Parameters
+from pvlvrt_compliance.texts import all_printable, shell_word
 
 _LIBRARIES = ("numpy", "scipy", "numba", "pydantic", "plotly")
 
@@ -46,10 +47,12 @@ def provenance(
     """
     return {
         "created": created.isoformat(),
-        "command": _quoted(command),
+        "command": " ".join(map(shell_word, command)),
         "profile": ", ".join(profile.id for profile in profiles),
         "profile_digest": ", ".join(profile.digest for profile in profiles),
-        **(controller or {"controller": "bundled", "controller_digest": kernel_digest()}),
+        **(
+            all_printable(controller) if controller else {"controller": "bundled", "controller_digest": kernel_digest()}
+        ),
         "versions": {
             "pvlvrt-compliance": __version__,
             "python": platform.python_version(),
@@ -57,9 +60,3 @@ def provenance(
         },
         "parameters": parameters.model_dump(mode="json"),
     }
-
-
-def _quoted(command: Sequence[str]) -> str:
-    import shlex
-
-    return shlex.join(command)

@@ -6,8 +6,8 @@ import time
 
 import pytest
 
-from pvlvrt_compliance.cli.output import OutputFolder
 from pvlvrt_compliance.report import html
+from pvlvrt_compliance.study.store import OutputFolder
 
 OLD = "<!doctype html><title>the report of the last whole run</title>"
 MAIN = ("--profile", "iec61400-21", "--sag", "90%")
