@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL, errno.EBADF)
+_TRIES = 100
 _FAR_BYTE = 1 << 30  # where Windows locks the file, so that what stands in it can be read
 
 
@@ -43,7 +44,7 @@ def take_lock(path: Path) -> Lock | None:
     OSError
         When the file cannot be made or written.
     """
-    while True:
+    for _ in range(_TRIES):
         descriptor = _open_lock(path)
         try:
             held = _hold(descriptor)
@@ -51,12 +52,12 @@ def take_lock(path: Path) -> Lock | None:
                 os.close(descriptor)
                 return None
             if _is_at(descriptor, path):
-                _sign(descriptor)
-                return Lock(path, descriptor, held is True)
-        except BaseException:
+                return _signed(Lock(path, descriptor, held is True))
+        except OSError:
             os.close(descriptor)
             raise
         os.close(descriptor)  # whoever held it has removed it meanwhile
+    raise OSError(errno.EAGAIN, os.strerror(errno.EAGAIN), str(path))
 
 
 def holder_of(path: Path) -> str:
@@ -106,13 +107,15 @@ def _is_at(descriptor: int, path: Path) -> bool:
         return False
 
 
-def _sign(descriptor: int) -> None:
+def _signed(lock: Lock) -> Lock:
     try:
-        os.ftruncate(descriptor, 0)
-        os.write(descriptor, f"{os.getpid()}\n".encode())
+        os.ftruncate(lock.descriptor, 0)
+        os.write(lock.descriptor, f"{os.getpid()}\n".encode())
     except OSError as error:
         if error.errno not in (errno.EBADF, errno.EINVAL):  # opened for reading alone
+            lock.path.unlink()
             raise
+    return lock
 
 
 def is_mine(path: Path) -> bool:

@@ -119,11 +119,13 @@ class _Run:
         """Run every test; waveforms are written and drawn at once, so that they need not be kept."""
         with _progress(len(self.job.tests), self.request.quiet) as advance:
             # The simulator is compiled, or read from its cache, on this import and on the first run.
+            from pvlvrt_compliance.simulation.scratch import clear_abandoned
             from pvlvrt_compliance.simulation.simulate import simulate
             from pvlvrt_compliance.study.rows import run_rows
             from pvlvrt_compliance.study.run import run_test
             from pvlvrt_compliance.study.sharing import SharedSimulator, rows_of, shared_together
 
+            clear_abandoned()
             rows = shared_together(rows_of(self.job.tests))
             in_order = [item for row in rows for item in row]
             with SharedSimulator(self.controller or simulate, in_order, self.job.parameters) as simulator:
@@ -210,7 +212,7 @@ class _Run:
 
     def _write(self, waveforms: Waveforms, name: str, item: Assignment, nominal: Nominal) -> None:
         stem = self.output.waveforms / name
-        with self.output.writing(stem):
+        with self.output.writing(stem.with_name(f"{name}.dat")):
             write_comtrade(
                 waveforms,
                 stem,
@@ -220,8 +222,10 @@ class _Run:
                 start=self.created,
                 trigger_s=item.test.scenario.start_s,
             )
-            if self.request.csv:
-                write_csv(waveforms, stem.with_name(f"{name}.csv"))
+        if self.request.csv:
+            table = stem.with_name(f"{name}.csv")
+            with self.output.writing(table):
+                write_csv(waveforms, table)
 
 
 def _of(profile: Profile, items: Iterable[Assignment]) -> list[TestCase]:
