@@ -118,18 +118,29 @@ def _reap(process: Process, until: float) -> None:
         os.waitpid(process.pid, os.WNOHANG)
 
 
-class Terminated(KeyboardInterrupt):
-    """The system, a CI service or `timeout` has asked this process to end (SIGTERM)."""
+class Stopped(BaseException):
+    """A signal has asked this process to end: SIGINT, or SIGTERM, which a CI service, `timeout` and docker send.
+
+    No `KeyboardInterrupt`, of which libraries make what they like.
+    """
+
+    def __init__(self, number: int = signal.SIGINT) -> None:
+        super().__init__(number)
+        self.number = number
 
 
-def status_of(end: BaseException | None) -> int:
+STOPS = (KeyboardInterrupt, Stopped)
+"""Ways in which a command is ended early."""
+
+
+def status_of(end: BaseException) -> int:
     """Exit status of a command that was ended early: 130, by SIGTERM 143."""
-    return 128 + (signal.SIGTERM if isinstance(end, Terminated) else signal.SIGINT)
+    return 128 + (end.number if isinstance(end, Stopped) else signal.SIGINT)
 
 
-def words_of(end: BaseException | None) -> str:
+def words_of(end: BaseException) -> str:
     """What has ended a command early."""
-    return "terminated (SIGTERM)" if isinstance(end, Terminated) else "interrupted"
+    return "interrupted" if status_of(end) == 128 + signal.SIGINT else "terminated (SIGTERM)"
 
 
 class _Command:
@@ -145,7 +156,7 @@ class _Command:
         """End the run by an exception; the second signal finds that at work already, the third ends at once."""
         self.signals += 1
         if self.signals == 1:
-            raise Terminated if number == signal.SIGTERM else KeyboardInterrupt
+            raise Stopped(number)
         if self.signals > 2:
             os._exit(128 + number)
 

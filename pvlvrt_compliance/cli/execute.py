@@ -15,7 +15,7 @@ from pvlvrt_compliance.checks.results import EXIT_STATUS, Results, TestResult, c
 from pvlvrt_compliance.cli.request import KEEP_ALL, KEEP_FAILED, Job, Request
 from pvlvrt_compliance.cli.telling import tell
 from pvlvrt_compliance.errors import OutputError
-from pvlvrt_compliance.processes import status_of, words_of
+from pvlvrt_compliance.processes import STOPS, status_of, words_of
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.provenance import CHOSEN
@@ -47,7 +47,7 @@ def execute(request: Request, job: Job) -> int:
         run.simulate()
         results = run.write_reports()
         run.output.finish()
-    except KeyboardInterrupt as end:
+    except STOPS as end:
         _log(f"{words_of(end)}; {run.keep_unfinished()}")
         return status_of(end)
     except OutputError as error:

@@ -15,7 +15,7 @@ from pvlvrt_compliance.cli.check import check
 from pvlvrt_compliance.cli.schema import schema
 from pvlvrt_compliance.cli.telling import tell
 from pvlvrt_compliance.errors import OutputError, PvlvrtError, UsageError
-from pvlvrt_compliance.processes import become_the_command, leave, status_of, words_of
+from pvlvrt_compliance.processes import STOPS, become_the_command, leave, status_of, words_of
 
 USAGE_STATUS = 2
 UNWRITTEN_STATUS = CRASHED_STATUS = 3
@@ -49,8 +49,7 @@ def run(arguments: Sequence[str]) -> int:
         return _complain(error.format_message())
     except (PvlvrtError, OSError) as error:
         return _complain_of(error)
-    except (typer.Abort, KeyboardInterrupt) as error:
-        end = error.__cause__ if isinstance(error, typer.Abort) else error
+    except (typer.Abort, *STOPS) as end:
         tell(words_of(end))
         return status_of(end)
     except SystemExit:
@@ -71,7 +70,7 @@ def main() -> None:
         with suppress(OSError):
             traceback.print_exc()
         status = CRASHED_STATUS
-    except KeyboardInterrupt as end:
+    except STOPS as end:
         status = status_of(end)
     leave(status)
 

@@ -87,3 +87,31 @@ def test_what_a_killed_command_leaves_in_the_temporary_folder(start, program, tm
     assert program(*arguments, TMPDIR=str(tmp_path / "tmp")).status == 0
     assert list((tmp_path / "tmp").iterdir()) == []
     assert not list((tmp_path / "out").glob(".unfinished*"))
+
+
+@pytest.mark.parametrize(
+    ("number", "status", "says"),
+    [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated (SIGTERM)")],
+    ids=["INT", "TERM"],
+)
+def test_one_signal_while_a_controller_is_opened(tmp_path, number, status, says):
+    """Before any simulation, too, the one line is there, and nothing else."""
+    code = f"from pathlib import Path\nPath({str(tmp_path / 'here')!r}).touch()\nwhile True: pass\n"
+    (tmp_path / "hangs.py").write_text(code)
+    (tmp_path / "tmp").mkdir()
+    process = subprocess.Popen(
+        [
+            *(sys.executable, "-m", "pvlvrt_compliance.cli.main", "--profile", "iec61400-21", "--sag", "50%"),
+            *("--controller", f"{tmp_path / 'hangs.py'}:C", "--output", tmp_path / "out"),
+        ],
+        env=os.environ | {"TMPDIR": str(tmp_path / "tmp")},
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    while not (tmp_path / "here").exists():
+        assert process.poll() is None, process.communicate()
+    process.send_signal(number)
+    _, err = process.communicate(timeout=SAFETY_S)
+    assert (process.returncode, err) == (status, f"pvlvrt-check: {says}\n")
+    assert list((tmp_path / "tmp").iterdir()) == []
+    assert not (tmp_path / "out").exists()
