@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from pvlvrt_compliance import processes
-from pvlvrt_compliance.errors import PvlvrtError
+from pvlvrt_compliance.errors import OutputError, PvlvrtError
 from pvlvrt_compliance.processes import FORKS
 from pvlvrt_compliance.simulation.scratch import clear_abandoned, job_folder
 
@@ -53,9 +53,12 @@ class Server:
 
     def do(self, job: Any, folder: Path, limit_s: float) -> Ended:
         """Do a job (an object that can be pickled) in a folder that is empty, for so long (s) at most."""
-        (folder / JOB).write_bytes(pickle.dumps(job))
-        (folder / PROGRESS).write_bytes(np.full(1, np.nan).tobytes())
-        (folder / SAID).touch()
+        try:
+            (folder / JOB).write_bytes(pickle.dumps(job))
+            (folder / PROGRESS).write_bytes(np.full(1, np.nan).tobytes())
+            (folder / SAID).touch()
+        except OSError as error:
+            raise OutputError(f"{folder} cannot be written: {error.strerror or error}") from None
         try:
             reason = self._await(folder, limit_s)
         except BaseException:
@@ -179,7 +182,13 @@ _server = Server()
 
 
 def do_apart(job: Any, limit_s: float, keep: Sequence[str] = ()) -> tuple[Ended, dict[str, Any]]:
-    """Do a job in the server's process; arrays by name that it has left are read before its folder is removed."""
+    """Do a job in the server's process; arrays by name that it has left are read before its folder is removed.
+
+    Raises
+    ------
+    OutputError
+        When the system's temporary folder cannot be written.
+    """
     with job_folder() as folder:
         ended = _server.do(job, folder, limit_s)
         files = {name: folder / name for name in keep}

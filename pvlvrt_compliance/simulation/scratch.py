@@ -8,6 +8,7 @@ from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 
+from pvlvrt_compliance.errors import OutputError
 from pvlvrt_compliance.locks import Lock, is_mine, take_lock
 from pvlvrt_compliance.processes import at_end
 
@@ -17,8 +18,17 @@ _open: dict[Path, Lock] = {}
 
 @contextmanager
 def job_folder() -> Iterator[Path]:
-    """A new folder, removed at the end. Beside it stands a lock that this process holds for as long as it lives."""
-    folder, lock = _made()
+    """A new folder, removed at the end. Beside it stands a lock that this process holds for as long as it lives.
+
+    Raises
+    ------
+    OutputError
+        When it cannot be made.
+    """
+    try:
+        folder, lock = _made()
+    except OSError as error:
+        raise OutputError(f"{tempfile.gettempdir()} cannot be written: {error.strerror or error}") from None
     _remove_at_end()
     _open[folder] = lock
     try:

@@ -210,6 +210,8 @@ class OutputFolder:
         waveforms = self.folder / WAVEFORMS
         if waveforms.exists() and not (waveforms.is_dir() and os.access(waveforms, os.W_OK | os.X_OK)):
             raise PermissionError(0, "no files can be put there", str(waveforms))
+        if waveforms.exists() and _device_of(waveforms) != _device_of(self.folder):
+            raise OSError(0, "it is on another file system than the folder that it stands in", str(waveforms))
 
     def _files_of(self, part: str) -> tuple[str, ...]:
         """Files of the run in the folder, or in a folder in it, by their names in the folder; of nobody else."""
@@ -227,6 +229,10 @@ class OutputFolder:
         if lock is not None:
             lock.release()
         remove_empty(self._made)
+
+
+def _device_of(place: Path) -> int:
+    return place.stat().st_dev
 
 
 def _records_of(folder: Path) -> set[str] | None:

@@ -11,6 +11,7 @@ import pytest
 import small_runs
 
 from pvlvrt_compliance.errors import OutputError, UsageError
+from pvlvrt_compliance.study import store
 from pvlvrt_compliance.study.store import JUNIT, REPORT, RESULTS, OutputFolder
 
 ID = {name: small_runs.results_of(name).run_id for name in ("first", "second", "third", "earlier")}
@@ -220,6 +221,14 @@ def test_a_file_in_the_way_of_the_waveforms(tmp_path):
     with pytest.raises(UsageError, match=r"no files can be put there .*waveforms"):
         OutputFolder(str(tmp_path))
     assert names_in(tmp_path) == {"waveforms"}
+
+
+def test_waveforms_on_another_file_system(begun, monkeypatch):
+    """No file takes its place there in one step: that is told before anything is simulated."""
+    monkeypatch.setattr(store, "_device_of", lambda place: len(place.parts))
+    with pytest.raises(UsageError, match=r"another file system .*waveforms"):
+        OutputFolder(str(begun))
+    assert_whole(begun, "first")
 
 
 def test_nothing_stays_of_a_run_that_is_discarded(tmp_path):

@@ -119,5 +119,9 @@ def _use(door: Door, job: DescribeJob, folder: Path) -> dict[str, Any]:
     with (folder / PROGRESS).open("r+b") as file:
         progress: Any = np.frombuffer(mmap.mmap(file.fileno(), 0), dtype=np.float64)
     record = run_through(door, job.scenario, job.parameters, job.plan, progress)
-    np.save(folder / RECORD, record.samples)
+    try:
+        np.save(folder / RECORD, record.samples)
+    except OSError as error:
+        (folder / RECORD).unlink()  # room for the answer
+        raise SimulationError(f"{folder / RECORD} cannot be written: {error.strerror or error}") from None
     return {"channels": record.channels, "notes": record.notes}
