@@ -38,6 +38,10 @@ class SimulationError(PvlvrtError):
     """A simulation ended without usable waveforms (that test becomes `error`, exit status 3)."""
 
 
+class OutputError(PvlvrtError):
+    """A file of a run cannot be written (exit status 3)."""
+
+
 class MeasurementError(PvlvrtError):
     """A quantity cannot be measured on the waveforms given (that check becomes `not_evaluated`)."""
 

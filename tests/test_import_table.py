@@ -13,7 +13,7 @@ import pvlvrt_compliance
 PACKAGE = Path(pvlvrt_compliance.__file__).parent
 NAME = pvlvrt_compliance.__name__
 
-COMMON = {"errors", "units", "space_vectors", "resources", "positions", "problems"}
+COMMON = {"errors", "units", "space_vectors", "resources", "positions", "problems", "texts"}
 KERNELS = {"kernel", "vectors", "sogi"}
 # By folder, or module at the root: what of the package it may import besides itself. "*" is everything.
 ALLOWED = {
@@ -24,6 +24,9 @@ ALLOWED = {
     "resources": {"errors"},
     "positions": set(),
     "problems": {"errors"},
+    "processes": set(),
+    "locks": set(),
+    "texts": set(),
     "compiled": {"errors"},
     "kernel": {"compiled"},
     "controllers": {"units"},  # what a user's own file imports
@@ -36,9 +39,11 @@ ALLOWED = {
     "checks": COMMON | {"profile", "scenario", "measure", "waveforms"},
     "control": COMMON | KERNELS,
     "plant": COMMON | KERNELS,
-    "simulation": COMMON | KERNELS | {"compiled", "controllers", "plant", "control", "scenario", "waveforms"},
+    "simulation": COMMON
+    | KERNELS
+    | {"compiled", "processes", "locks", "controllers", "plant", "control", "scenario", "waveforms"},
     # The kernel's digest is part of the provenance of a run.
-    "study": COMMON | {"kernel", "profile", "scenario", "simulation", "checks", "waveforms"},
+    "study": COMMON | {"kernel", "processes", "locks", "profile", "scenario", "simulation", "checks", "waveforms"},
     "report": COMMON | {"checks.results", "waveforms", "profile", "measure"},
     "cli": {"*"},
     "templates": set(),  # projects of users, which stand alone

@@ -1,14 +1,19 @@
 """The one result object: table, HTML, JUnit, JSON and exit status are all made from it."""
 
+import hashlib
+import json
 from collections.abc import Iterable
 from enum import StrEnum
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, FiniteFloat
 
 from pvlvrt_compliance.measure.quantities import Measurements
+from pvlvrt_compliance.texts import all_printable
 
 SCHEMA_VERSION = 1
+
+_NOT_FOUND = ("created", "command")  # of the provenance: when and how a run was asked for, not what it is or found
 
 
 class Status(StrEnum):
@@ -45,7 +50,8 @@ class Check(_Frozen):
     at_s: FiniteFloat | None = Field(default=None, description="the worst instant, from the start of the record")
     clause: str = ""
     confidence: str = Field(default="", description="the weakest mark of the numbers that the verdict rests on")
-    message: str = ""
+    # A message may name a file, whose name need not be text.
+    message: Annotated[str, BeforeValidator(all_printable)] = ""
 
 
 class TestResult(_Frozen):
@@ -85,6 +91,10 @@ class Results(_Frozen):
     """A whole run."""
 
     schema_version: int = SCHEMA_VERSION
+    run_id: str = Field(
+        default="",
+        description="digest of what the run is and found, whenever that was; its junit.xml and report.html carry it",
+    )
     status: Status
     profiles: tuple[ProfileSummary, ...] = ()
     provenance: dict[str, Any] = Field(default_factory=dict)
@@ -99,10 +109,17 @@ class Results(_Frozen):
 def conclude(
     tests: Iterable[TestResult], profiles: Iterable[ProfileSummary] = (), provenance: dict[str, Any] | None = None
 ) -> Results:
-    """Gather tests into the result of a run; the file's verdict is the worst of its tests'."""
+    """Gather tests into the result of a run, with its id; the file's verdict is the worst of its tests'."""
     tests = tuple(tests)
     status = worst(test.status for test in tests)
-    return Results(status=status, tests=tests, profiles=tuple(profiles), provenance=provenance or {})
+    results = Results(status=status, tests=tests, profiles=tuple(profiles), provenance=provenance or {})
+    return results.model_copy(update={"run_id": _run_id(results)})
+
+
+def _run_id(results: Results) -> str:
+    """16 hexadecimal digits that are the same for the same input and the same findings."""
+    found = results.model_dump(mode="json", exclude={"run_id": True, "provenance": set(_NOT_FOUND)})
+    return hashlib.sha256(json.dumps(found, sort_keys=True).encode()).hexdigest()[:16]
 
 
 EXIT_STATUS = {

@@ -16,8 +16,8 @@ waveforms and writes report.html, junit.xml, results.json and the waveforms.
 
 Example: [bold]pvlvrt-check --profile iec61400-21 --sag 90%[/bold]
 
-Exit status: 0 all passed, 1 a check failed, 2 wrong usage or profile, 3 something could not be simulated or \
-evaluated, 130 interrupted.
+Exit status: 0 all passed, 1 a check failed, 2 wrong usage or profile, 3 something could not be simulated, \
+evaluated or written, 130 interrupted, 143 terminated (SIGTERM).
 """
 
 

@@ -1,6 +1,5 @@
 """Run the tests, show them, write the reports."""
 
-import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from datetime import datetime
@@ -13,8 +12,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn
 
 from pvlvrt_compliance.checks.evaluate import summarise
 from pvlvrt_compliance.checks.results import EXIT_STATUS, Results, TestResult, conclude
-from pvlvrt_compliance.cli.output import RESULTS, WAVEFORMS, OutputFolder
 from pvlvrt_compliance.cli.request import KEEP_ALL, KEEP_FAILED, Job, Request
+from pvlvrt_compliance.cli.telling import tell
+from pvlvrt_compliance.errors import OutputError
+from pvlvrt_compliance.processes import STOPS, status_of, words_of
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.provenance import CHOSEN
@@ -24,6 +25,7 @@ from pvlvrt_compliance.report.figure import test_figure
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.study.provenance import created_at, provenance
 from pvlvrt_compliance.study.selection import Assignment
+from pvlvrt_compliance.study.store import JUNIT, REPORT, RESULTS, WAVEFORMS, OutputFolder
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms import Waveforms
 from pvlvrt_compliance.waveforms.comtrade import write_comtrade
@@ -33,30 +35,36 @@ if TYPE_CHECKING:
     from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
     from pvlvrt_compliance.study.run import Judged
 
-_INTERRUPTED_STATUS = 130
-
 
 def execute(request: Request, job: Job) -> int:
     """Run what was asked for and return the exit status."""
     controller = _own_controller(request, job)
     told = len(controller.notes) if controller else 0
     run = _Run(request, job, created_at(), OutputFolder(request.output), controller)
+    for note in run.output.notes:
+        tell(note)
     try:
         run.simulate()
         results = run.write_reports()
         run.output.finish()
-    except KeyboardInterrupt:
-        run.keep_unfinished("interrupted")
-        return _INTERRUPTED_STATUS
-    except OSError:  # nothing can be written there: nothing can be kept there
-        run.output.discard()
-        raise
+    except STOPS as end:
+        _log(f"{words_of(end)}; {run.keep_unfinished()}")
+        return status_of(end)
+    except OutputError as error:
+        raise OutputError(f"{error}; {run.keep_unfinished()}") from error
+    except OSError as error:
+        named = f"{error.filename}: {error.strerror}" if error.filename else str(error)
+        raise OutputError(f"{named}; {run.keep_unfinished()}") from error
     except BaseException:
-        run.keep_unfinished("stopped by an error of the program")
+        _log(f"stopped by an error of the program; {run.keep_unfinished()}")
         raise
     _tell(controller.notes[told:] if controller else (), request)
-    with suppress(SystemExit):  # rich ends the program when the reader of stdout has gone; the verdict still stands
-        _show(results, request)
+    try:
+        with suppress(SystemExit):  # rich ends the program when the reader of stdout has gone; the verdict still stands
+            _show(results, request)
+    except OSError as error:
+        said = f"standard output cannot be written: {error.strerror or error}"
+        raise OutputError(f"{said}; the reports are in {run.output.folder}: {console.summary_line(results)}") from None
     return 0 if request.exit_zero else EXIT_STATUS[results.status]
 
 
@@ -82,7 +90,14 @@ def _own_controller(request: Request, job: Job) -> "ForeignSimulator | None":
 def _tell(notes: Iterable[str], request: Request) -> None:
     """Say what there is to know of the user's own controller, or what it has said itself."""
     for note in notes:
-        print(f"pvlvrt-check: {request.controller}: {note}", file=sys.stderr)
+        tell(f"{request.controller}: {note}")
+
+
+def _log(text: str) -> None:
+    """Say on stderr why a run has ended early; in a file a line stays one line."""
+    log = Console(stderr=True, highlight=False, markup=False, emoji=False)
+    with suppress(OSError):
+        log.print(text, soft_wrap=not log.is_terminal)
 
 
 class _Run:
@@ -104,11 +119,13 @@ class _Run:
         """Run every test; waveforms are written and drawn at once, so that they need not be kept."""
         with _progress(len(self.job.tests), self.request.quiet) as advance:
             # The simulator is compiled, or read from its cache, on this import and on the first run.
+            from pvlvrt_compliance.simulation.scratch import clear_abandoned
             from pvlvrt_compliance.simulation.simulate import simulate
             from pvlvrt_compliance.study.rows import run_rows
             from pvlvrt_compliance.study.run import run_test
             from pvlvrt_compliance.study.sharing import SharedSimulator, rows_of, shared_together
 
+            clear_abandoned()
             rows = shared_together(rows_of(self.job.tests))
             in_order = [item for row in rows for item in row]
             with SharedSimulator(self.controller or simulate, in_order, self.job.parameters) as simulator:
@@ -148,21 +165,27 @@ class _Run:
         """Stage all reports."""
         results = self.results()
         self.output.write(RESULTS, results_json.render(results))
-        self.output.write("junit.xml", junit.render(results))
-        self.output.write("report.html", html.render(results, self.figures))
+        self.output.write(JUNIT, junit.render(results))
+        self.output.write(REPORT, html.render(results, self.figures))
         return results
 
-    def keep_unfinished(self, why: str) -> None:
-        """Keep the finished tests apart from the reports of the last whole run, and say where."""
-        log = Console(stderr=True, highlight=False)
-        count = f"{len(self.finished)} of {len(self.job.tests)} tests"
-        if not self.finished:
-            self.output.discard()
-            log.print(f"{why}; {count} were finished, nothing was written")
-            return
-        self.output.write(RESULTS, results_json.render(self.results()))
-        place = self.output.keep_interrupted()
-        log.print(f"{why}; {count} were finished and are kept in {place}", soft_wrap=not log.is_terminal)
+    def keep_unfinished(self) -> str:
+        """Keep the finished tests apart from the reports of the last whole run; what has become of them, in words."""
+        count = f"{len(self.finished)} of {len(self.job.tests)} tests were finished"
+        said = "nothing was written"
+        if self.output.is_placed:
+            said = f"all files are in {self.output.folder}"
+        elif self.output.is_stuck:
+            said = "they wait there"
+        elif self.finished:
+            try:
+                self.output.drop_all_but(set(self.files.values()))
+                self.output.write(RESULTS, results_json.render(self.results()))
+                return f"{count} and are kept in {self.output.keep_interrupted()}"
+            except (OutputError, OSError) as error:
+                said = f"they could not be kept: {error}"
+        self.output.discard()
+        return f"{count}, {said}"
 
     def _keep(self, result: TestResult, waveforms: Waveforms, item: Assignment, nominal: Nominal) -> TestResult:
         profile = item.profile
@@ -182,22 +205,27 @@ class _Run:
         """Path of the record in the output folder; it is written once for all tests of its scenario."""
         scenario = item.test.scenario
         if scenario not in self.files:
-            self.files[scenario] = result.key if len(self.job.profiles) > 1 else result.id
-            self._write(waveforms, self.files[scenario], item, nominal)
+            name = result.key if len(self.job.profiles) > 1 else result.id
+            self._write(waveforms, name, item, nominal)
+            self.files[scenario] = name
         return f"{WAVEFORMS}/{self.files[scenario]}.cfg"
 
     def _write(self, waveforms: Waveforms, name: str, item: Assignment, nominal: Nominal) -> None:
-        write_comtrade(
-            waveforms,
-            self.output.waveforms / name,
-            station=item.profile.id,
-            device="pvlvrt-check",
-            frequency_hz=nominal.frequency_hz,
-            start=self.created,
-            trigger_s=item.test.scenario.start_s,
-        )
+        stem = self.output.waveforms / name
+        with self.output.writing(stem.with_name(f"{name}.dat")):
+            write_comtrade(
+                waveforms,
+                stem,
+                station=item.profile.id,
+                device="pvlvrt-check",
+                frequency_hz=nominal.frequency_hz,
+                start=self.created,
+                trigger_s=item.test.scenario.start_s,
+            )
         if self.request.csv:
-            write_csv(waveforms, self.output.waveforms / f"{name}.csv")
+            table = stem.with_name(f"{name}.csv")
+            with self.output.writing(table):
+                write_csv(waveforms, table)
 
 
 def _of(profile: Profile, items: Iterable[Assignment]) -> list[TestCase]:
@@ -242,7 +270,7 @@ def _show(results: Results, request: Request) -> None:
         if profile.left_out:
             left_out = f"Left out: {', '.join(profile.left_out)} of {profile.id} (long; --include-long runs them)"
             screen.print(left_out, soft_wrap=not screen.is_terminal)
-    screen.print(f"Report: {Path(request.output) / 'report.html'}", soft_wrap=True)
+    screen.print(f"Report: {Path(request.output) / REPORT}", soft_wrap=True)
 
 
 def _rates(origin: Mapping[str, Any]) -> str:

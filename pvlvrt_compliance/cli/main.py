@@ -1,8 +1,11 @@
 """Entry point: reads the command line, turns every error into one clear line and an exit status."""
 
+import io
+import os
 import sys
 import traceback
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any
 
 import typer
@@ -10,12 +13,13 @@ import typer
 from pvlvrt_compliance.cli import controllers, profiles
 from pvlvrt_compliance.cli.check import check
 from pvlvrt_compliance.cli.schema import schema
+from pvlvrt_compliance.cli.telling import tell
 from pvlvrt_compliance.compiled.notes import tell_in_lines
-from pvlvrt_compliance.errors import PvlvrtError, UsageError
+from pvlvrt_compliance.errors import OutputError, PvlvrtError, UsageError
+from pvlvrt_compliance.processes import STOPS, become_the_command, leave, status_of, words_of
 
 USAGE_STATUS = 2
-CRASHED_STATUS = 3
-INTERRUPTED_STATUS = 130
+UNWRITTEN_STATUS = CRASHED_STATUS = 3
 
 # What typer raises for an option it does not know or cannot read. Its own name has moved between versions.
 _CommandLineError: Any = typer.BadParameter.__bases__[0]
@@ -44,29 +48,58 @@ def run(arguments: Sequence[str]) -> int:
         )
     except _CommandLineError as error:
         return _complain(error.format_message())
-    except PvlvrtError as error:
-        return _complain(str(error))
-    except (typer.Abort, KeyboardInterrupt):
-        print("interrupted", file=sys.stderr)
-        return INTERRUPTED_STATUS
+    except (PvlvrtError, OSError) as error:
+        return _complain_of(error)
+    except (typer.Abort, *STOPS) as end:
+        tell(words_of(end))
+        return status_of(end)
     except SystemExit:
         # rich and typer end the program so when the reader of stdout has gone (for instance `| head`).
         return 0
-    except OSError as error:
-        return _complain(str(error))
     return status if isinstance(status, int) else 0
 
 
 def main() -> None:
     """Run as a program."""
     tell_in_lines()
+    become_the_command()
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="surrogateescape")  # a file's name need not be text
     try:
-        status = run(sys.argv[1:])
+        status = _flushed(run(sys.argv[1:]))
     except Exception:
         # Python's own status for a crash is 1, which means here that a check failed.
-        traceback.print_exc()
+        with suppress(OSError):
+            traceback.print_exc()
         status = CRASHED_STATUS
-    sys.exit(status)
+    except STOPS as end:
+        status = status_of(end)
+    leave(status)
+
+
+def _flushed(status: int) -> int:
+    """Write what is still to be written; the status with which the command ends then."""
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except OSError as error:
+        # Python would try it again at its end, and end with a status of its own.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            return status if status == UNWRITTEN_STATUS else _complain(_unwritten(error), UNWRITTEN_STATUS)
+    return status
+
+
+def _complain_of(error: PvlvrtError | OSError) -> int:
+    if isinstance(error, OutputError):
+        return _complain(str(error), UNWRITTEN_STATUS)
+    if isinstance(error, OSError) and error.filename is None:  # of all that is written, one stream has no name
+        return _complain(_unwritten(error), UNWRITTEN_STATUS)
+    return _complain(str(error))
+
+
+def _unwritten(error: OSError) -> str:
+    return f"standard output cannot be written: {error.strerror or error}"
 
 
 def _with_explicit_pair(arguments: Sequence[str]) -> list[str]:
@@ -85,9 +118,9 @@ def _with_explicit_pair(arguments: Sequence[str]) -> list[str]:
     return given
 
 
-def _complain(message: str) -> int:
-    print(f"pvlvrt-check: {message}", file=sys.stderr)
-    return USAGE_STATUS
+def _complain(message: str, status: int = USAGE_STATUS) -> int:
+    tell(message)
+    return status
 
 
 if __name__ == "__main__":

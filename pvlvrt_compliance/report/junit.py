@@ -3,6 +3,7 @@
 import itertools
 import re
 import xml.etree.ElementTree as ET
+from collections.abc import Mapping
 
 from pvlvrt_compliance.checks.results import Check, ProfileSummary, Results, Status, TestResult
 from pvlvrt_compliance.report import format as spell
@@ -28,7 +29,8 @@ def render(results: Results) -> bytes:
     root = ET.Element("testsuites", name="pvlvrt-check", time=f"{duration_s:.3f}")
     digests = {profile.id: profile for profile in results.profiles}
     taken: set[tuple[str, str]] = set()
-    suites = [_suite(test, digests.get(test.profile), taken) for test in results.tests]
+    run = {"run_id": results.run_id, "command": str(results.provenance.get("command", ""))}
+    suites = [_suite(test, digests.get(test.profile), run, taken) for test in results.tests]
     for total in ("tests", "failures", "errors"):
         root.set(total, str(sum(int(suite.get(total, "0")) for suite in suites)))
     root.extend(suites)
@@ -37,14 +39,16 @@ def render(results: Results) -> bytes:
     return xml + b"\n"
 
 
-def _suite(test: TestResult, profile: ProfileSummary | None, taken: set[tuple[str, str]]) -> ET.Element:
+def _suite(
+    test: TestResult, profile: ProfileSummary | None, run: Mapping[str, str], taken: set[tuple[str, str]]
+) -> ET.Element:
     classname = ".".join(filter(None, (test.profile, test.id)))
     checks = verdicts(test)
     outcomes = [_OUTCOME.get(check.status) for check in checks]
     suite = ET.Element("testsuite", name=_text(classname), tests=str(len(checks)), time=f"{test.duration_s:.3f}")
     for total, kind in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped")):
         suite.set(total, str(outcomes.count(kind)))
-    suite.append(_properties(test, profile))
+    suite.append(_properties(test, profile, run))
     for check in checks:
         name = _unique(_text(classname), _text(check.check), taken)
         case = ET.SubElement(suite, "testcase", classname=_text(classname), name=name)
@@ -54,8 +58,9 @@ def _suite(test: TestResult, profile: ProfileSummary | None, taken: set[tuple[st
     return suite
 
 
-def _properties(test: TestResult, profile: ProfileSummary | None) -> ET.Element:
+def _properties(test: TestResult, profile: ProfileSummary | None, run: Mapping[str, str]) -> ET.Element:
     values = {
+        **run,
         "status": test.status.value,
         "title": test.title,
         "clause": test.clause,

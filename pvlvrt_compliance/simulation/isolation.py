@@ -5,15 +5,12 @@ and it is safe: Linux), elsewhere it does one job and ends. What goes to and fro
 that the simulated time reached and what the controller has printed are there whatever ends the process.
 """
 
-import atexit
 import json
-import os
 import pickle
 import queue
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 from collections.abc import Sequence
 from contextlib import suppress
@@ -22,15 +19,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pvlvrt_compliance.errors import PvlvrtError
-
-FORKS = sys.platform == "linux"
-"""Whether the server lives on from job to job."""
+from pvlvrt_compliance import processes
+from pvlvrt_compliance.errors import OutputError, PvlvrtError
+from pvlvrt_compliance.processes import FORKS
+from pvlvrt_compliance.simulation.scratch import clear_abandoned, job_folder
 
 JOB, ANSWER, SAID, PROGRESS, RECORD = "job.pickle", "answer.json", "said.txt", "progress.bin", "record.npy"
 """Files in the folder of a job."""
 
 _SAID_LINES, _SAID_CHARACTERS = 8, 800
+_PATIENCE_S = 0.5  # with a server that is to end
 
 
 class Ended(NamedTuple):
@@ -55,9 +53,12 @@ class Server:
 
     def do(self, job: Any, folder: Path, limit_s: float) -> Ended:
         """Do a job (an object that can be pickled) in a folder that is empty, for so long (s) at most."""
-        (folder / JOB).write_bytes(pickle.dumps(job))
-        (folder / PROGRESS).write_bytes(np.full(1, np.nan).tobytes())
-        (folder / SAID).touch()
+        try:
+            (folder / JOB).write_bytes(pickle.dumps(job))
+            (folder / PROGRESS).write_bytes(np.full(1, np.nan).tobytes())
+            (folder / SAID).touch()
+        except OSError as error:
+            raise OutputError(f"{folder} cannot be written: {error.strerror or error}") from None
         try:
             reason = self._await(folder, limit_s)
         except BaseException:
@@ -73,15 +74,22 @@ class Server:
         )
 
     def end(self) -> None:
-        """End the process, and whatever job it has."""
+        """End the process, whatever job it has, and whatever that has started."""
         process, self._process = self._process, None
         if process is None:
             return
+        family = processes.descendants(process.pid)
         if process.stdin is not None:
             process.stdin.close()  # a server that forks ends its job and itself then
-        if not FORKS:
-            process.kill()
+        if FORKS:
+            with suppress(subprocess.TimeoutExpired):  # it is not ready for any job yet
+                process.wait(_PATIENCE_S)
+        else:
+            processes.kill_group(process.pid)
+        process.kill()
         process.wait()
+        for other in family:
+            processes.kill(other)
 
     def _await(self, folder: Path, limit_s: float) -> str:
         """Have a job done; why it ended, in words."""
@@ -104,8 +112,7 @@ class Server:
 
     def _kill(self, pid: int) -> None:
         if FORKS:
-            with suppress(ProcessLookupError):  # it has just ended by itself
-                os.killpg(pid, signal.SIGKILL)
+            processes.kill_group(pid)
             self._line(None)
         else:
             self.end()
@@ -119,6 +126,8 @@ class Server:
         return self._process
 
     def _start(self) -> "subprocess.Popen[str]":
+        clear_abandoned()
+        processes.before_children()
         code = (
             f"import sys; sys.path[:] = {sys.path!r}; "
             "from pvlvrt_compliance.simulation.doors.worker import main; main()"
@@ -128,11 +137,12 @@ class Server:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             encoding="utf-8",
+            errors="surrogateescape",
             start_new_session=True,  # Ctrl-C goes to the command alone, which then ends this process
         )
         self._lines = queue.Queue()
         threading.Thread(target=_read, args=(process, self._lines), daemon=True).start()
-        atexit.register(self.end)
+        processes.at_end(self.end)
         return process
 
     def _line(self, limit_s: float | None) -> str:
@@ -172,8 +182,14 @@ _server = Server()
 
 
 def do_apart(job: Any, limit_s: float, keep: Sequence[str] = ()) -> tuple[Ended, dict[str, Any]]:
-    """Do a job in the server's process; arrays by name that it has left are read before its folder is removed."""
-    with tempfile.TemporaryDirectory(prefix="pvlvrt-", ignore_cleanup_errors=True) as folder:
-        ended = _server.do(job, Path(folder), limit_s)
-        files = {name: Path(folder) / name for name in keep}
+    """Do a job in the server's process; arrays by name that it has left are read before its folder is removed.
+
+    Raises
+    ------
+    OutputError
+        When the system's temporary folder cannot be written.
+    """
+    with job_folder() as folder:
+        ended = _server.do(job, folder, limit_s)
+        files = {name: folder / name for name in keep}
         return ended, {name: np.load(file) for name, file in files.items() if file.is_file()}

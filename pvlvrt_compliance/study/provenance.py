@@ -11,6 +11,7 @@ from pvlvrt_compliance import __version__
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.scenario.parameters import Parameters
+from pvlvrt_compliance.texts import all_printable, shell_word
 
 _LIBRARIES = ("numpy", "scipy", "numba", "pydantic", "plotly")
 
@@ -45,10 +46,10 @@ def provenance(
     """
     return {
         "created": created.isoformat(),
-        "command": _quoted(command),
+        "command": " ".join(map(shell_word, command)),
         "profile": ", ".join(profile.id for profile in profiles),
         "profile_digest": ", ".join(profile.digest for profile in profiles),
-        **(controller or _bundled()),
+        **(all_printable(controller) if controller else _bundled()),
         "versions": {
             "pvlvrt-compliance": __version__,
             "python": platform.python_version(),
@@ -64,9 +65,3 @@ def _bundled() -> dict[str, str]:
     from pvlvrt_compliance.simulation.loop import run
 
     return {"controller": "bundled", "controller_digest": sources_of(run).digest}
-
-
-def _quoted(command: Sequence[str]) -> str:
-    import shlex
-
-    return shlex.join(command)

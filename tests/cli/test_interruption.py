@@ -2,11 +2,12 @@
 
 import os
 import signal
-import time
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
-from pvlvrt_compliance.cli.output import OutputFolder
 from pvlvrt_compliance.report import html
 
 OLD = "<!doctype html><title>the report of the last whole run</title>"
@@ -22,36 +23,125 @@ def folder(tmp_path):
     return folder
 
 
-def _unfinished(folder):
-    return [p.name for p in folder.iterdir() if p.name.startswith(".unfinished-")]
+POSIX = pytest.mark.skipif(os.name == "nt", reason="Windows cannot send a signal to one process")
+ENDS = pytest.mark.parametrize(
+    ("number", "status", "word"),
+    [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated (SIGTERM)")],
+    ids=["SIGINT", "SIGTERM"],
+)
+SAFETY_S = 240  # no test waits for it: it ends one that hangs
 
 
-def _wait_for(condition, process):
-    end = time.monotonic() + 240
-    while not condition():
-        assert process.poll() is None, process.communicate()
-        assert time.monotonic() < end
-        time.sleep(0.01)
+@pytest.fixture
+def paused(tmp_path):
+    """Start the command and wait until it says `here`, see `paused.py`: ``paused(place, *arguments) -> process``."""
+    processes = []
+
+    def start(place, *arguments):
+        # A temporary folder of its own, to see what is left in it.
+        (tmp_path / "tmp").mkdir(exist_ok=True)
+        process = subprocess.Popen(
+            [sys.executable, Path(__file__).with_name("paused.py"), place, *map(str, arguments)],
+            env=os.environ | {"TMPDIR": str(tmp_path / "tmp")},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+        )
+        processes.append(process)
+        assert process.stdout.readline() == b"here\n", process.communicate(timeout=SAFETY_S)
+        return process
+
+    yield start
+    for process in processes:
+        process.kill()
+        process.communicate()
 
 
-@pytest.mark.skipif(os.name == "nt", reason="Windows cannot send an interruption to one process")
-def test_interrupted_in_the_middle(start_program, reports, folder):
-    """Status 130; the old report is whole, finished tests are kept apart, and nothing half-written is left."""
-    process = start_program("--profile", "iec61400-21", "--output", folder)
-    _wait_for(lambda: len(list(folder.glob(".unfinished-*/waveforms/*.dat"))) >= 3, process)
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    assert (process.returncode, out) == (130, b"")
-    lines = err.decode().splitlines()
-    assert len(lines) == 1
-    assert lines[0].startswith("interrupted; ")
-    assert "of 27 tests were finished and are kept in" in lines[0]
+def ended(process):
+    """Status, output and errors of a process that has been told to end."""
+    out, err = process.communicate(timeout=SAFETY_S)
+    return process.returncode, out.decode(), err.decode()
+
+
+@POSIX
+@ENDS
+def test_interrupted_in_the_middle(paused, reports, folder, tmp_path, number, status, word):
+    """The old report is whole, finished tests are kept apart, and nothing half-written is left."""
+    process = paused("4", "--profile", "iec61400-21", "--output", folder)
+    process.send_signal(number)
+    place = folder / "interrupted"
+    assert ended(process) == (status, "", f"{word}; 3 of 27 tests were finished and are kept in {place}\n")
     assert (folder / "report.html").read_text("utf-8") == OLD
     assert sorted(p.name for p in folder.iterdir()) == ["interrupted", "report.html"]
-    kept = reports(folder / "interrupted")
-    assert 2 <= len(kept.verdicts) < 27
+    kept = reports(place)
+    assert len(kept.verdicts) == 3
     for test in kept.json["tests"]:
         assert (kept.folder / test["waveforms"]).stat().st_size > 0
+    assert kept.files == {"results.json"} | {f"waveforms/{name}.{e}" for name in kept.verdicts for e in ("cfg", "dat")}
+    assert list((tmp_path / "tmp").iterdir()) == []
+
+
+@POSIX
+@ENDS
+def test_interrupted_inside_the_compiled_loop(paused, folder, number, status, word):
+    """Compiled code hears no signal: the command ends without waiting for it."""
+    process = paused("compiled", *MAIN[:2], "--sag", "10%", "--duration", "3600s", "--output", folder)
+    process.send_signal(number)
+    assert ended(process) == (status, "", f"{word}; 0 of 1 tests were finished, nothing was written\n")
+    assert [p.name for p in folder.iterdir()] == ["report.html"]
+
+
+@POSIX
+def test_a_second_signal_changes_nothing(paused, reports, folder):
+    """While finished tests are put in place, another signal is of no account."""
+    process = paused("twice", "--profile", "iec61400-21", "--output", folder)
+    process.terminate()
+    status, _, err = ended(process)
+    assert (status, "2 of 27 tests were finished and are kept in" in err) == (143, True)
+    assert len(reports(folder / "interrupted").verdicts) == 2
+    assert sorted(p.name for p in folder.iterdir()) == ["interrupted", "report.html"]
+
+
+@POSIX
+def test_a_third_signal_ends_at_once(command, paused, folder):
+    """Whatever it is at, the command ends; what it leaves, the next run into the folder clears away."""
+    process = paused("thrice", "--profile", "iec61400-21", "--output", folder)
+    process.terminate()
+    assert ended(process) == (143, "", "")
+    assert (folder / "report.html").read_text("utf-8") == OLD
+    assert len(list(folder.glob(".unfinished-*"))) == 1
+    assert command(*MAIN, "--output", folder).status == 0
+    assert not list(folder.glob(".unfinished*"))
+
+
+@POSIX
+def test_what_killed_runs_leave_is_cleared_away(command, paused, folder):
+    """A run that is killed can clear nothing away; the next one does, and only that."""
+    for _ in range(2):
+        process = paused("3", "--profile", "iec61400-21", "--output", folder)
+        assert len(list(folder.glob(".unfinished-*/waveforms/*.dat"))) == 2
+        assert len(list(folder.glob(".unfinished-*"))) == 1
+        process.kill()
+        ended(process)
+    assert command(*MAIN, "--output", folder).status == 0
+    assert sorted(p.name for p in folder.iterdir()) == ["junit.xml", "report.html", "results.json", "waveforms"]
+
+
+@POSIX
+def test_two_runs_into_one_folder(command, paused, reports, folder):
+    """The second is refused before it simulates anything; the first is not disturbed."""
+    process = paused("3", "--profile", "iec61400-21", "--output", folder)
+    refused = command(*MAIN, "--output", folder)
+    assert refused == (
+        2,
+        "",
+        f"pvlvrt-check: --output {folder}: another run (process {process.pid}) is writing there;"
+        " wait for its end, or name another folder\n",
+    )
+    process.terminate()
+    assert ended(process)[0] == 143
+    assert len(reports(folder / "interrupted").verdicts) == 2
+    assert command(*MAIN, "--output", folder).status == 0
 
 
 @pytest.fixture
@@ -114,19 +204,6 @@ def test_crash_in_the_middle(command, reports, monkeypatch, folder):
     assert [test["status"] for test in reports(folder / "interrupted").json["tests"]] == ["pass"]
 
 
-def test_disk_that_is_full(command, monkeypatch, folder):
-    """A file that cannot be written is one line and status 2; the old report stays."""
-
-    def full(*_arguments):
-        raise OSError(28, "No space left on device", "report.html")
-
-    monkeypatch.setattr(OutputFolder, "write", full)
-    ended = command(*MAIN, "--output", folder)
-    assert (ended.status, ended.out, ended.err.count("\n")) == (2, "", 1)
-    assert "No space left on device" in ended.err
-    assert [p.name for p in folder.iterdir()] == ["report.html"]
-
-
 def test_whole_run_takes_the_place_of_the_old(command, reports, folder):
     """A later run replaces reports and waveforms of the one before; files of others stay."""
     (folder / "waveforms").mkdir(parents=True)
@@ -139,4 +216,4 @@ def test_whole_run_takes_the_place_of_the_old(command, reports, folder):
     assert found.page.get_element_by_id("verdict").get("data-status") == "pass"
     assert {"notes.txt", "waveforms/others.dat"} <= set(found.files)
     assert not [name for name in found.files if "sag-0pct" in name]
-    assert _unfinished(folder) == []
+    assert not list(folder.glob(".unfinished*"))

@@ -106,7 +106,7 @@ def test_schema_refuses_what_is_no_result(main_job, command, change):
 
 def test_keys_that_other_programs_rely_on(main_job, result):
     """Top level, test, check and windows have the keys of the published interface."""
-    assert set(main_job.reports.json) == {"schema_version", "status", "profiles", "provenance", "tests"}
+    assert set(main_job.reports.json) == {"schema_version", "run_id", "status", "profiles", "provenance", "tests"}
     assert result.keys() >= {"id", "scenario", "status", "checks", "waveforms", "measurements"}
     assert [check["check"] for check in result["checks"]] == CHECKS
     for check in result["checks"]:

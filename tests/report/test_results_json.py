@@ -1,7 +1,11 @@
 import json
+import xml.etree.ElementTree as ET
 
-from pvlvrt_compliance.checks.results import Check, Results, TestResult
-from pvlvrt_compliance.report import results_json
+import lxml.html
+import pytest
+
+from pvlvrt_compliance.checks.results import Check, Results, Status, TestResult, conclude
+from pvlvrt_compliance.report import html, junit, results_json
 
 
 def test_reading_it_back_gives_the_same_results(make_test, make_results):
@@ -30,3 +34,40 @@ def test_schema_names_every_key(make_test, make_results):
     found = json.loads(results_json.render(make_results(make_test())))["tests"][0]
     assert set(found) <= set(definitions["TestResult"]["properties"])
     assert set(found["measurements"]["during"]) <= set(definitions["WindowMeasurements"]["properties"])
+
+
+def test_id_of_a_run_is_in_all_its_files(make_test, make_results):
+    """A reader can tell whether they are of one run."""
+    results = make_results(make_test(), make_test("other"))
+    assert len(results.run_id) == 16
+    assert json.loads(results_json.render(results))["run_id"] == results.run_id
+    suites = ET.fromstring(junit.render(results)).findall("testsuite")
+    ids = [suite.find("properties/property[@name='run_id']").get("value") for suite in suites]
+    assert ids == [results.run_id] * 2
+    page = lxml.html.document_fromstring(html.render(results, {}))
+    assert page.xpath("//meta[@name='run-id']/@content") == [results.run_id]
+    assert page.xpath("//dl[@class='run']/dt[text()='Run']/following-sibling::dd/code/text()") == [results.run_id]
+
+
+def test_id_of_a_run_is_what_it_found_not_when(make_test, make_results):
+    """Another time, or another way to ask, is the same run."""
+    results = make_results(make_test())
+    for key in ("created", "command"):
+        assert conclude(results.tests, results.profiles, results.provenance | {key: "other"}).run_id == results.run_id
+    assert make_results(make_test()).run_id == results.run_id
+
+
+@pytest.mark.parametrize(
+    "fields", [{"title": "other"}, {"reactive": Status.FAIL}, {"waveforms": None}, {"duration_s": 2.0}], ids=str
+)
+def test_runs_that_differ_have_different_ids(make_test, make_results, fields):
+    """In whatever they found."""
+    assert make_results(make_test(**fields)).run_id != make_results(make_test()).run_id
+
+
+@pytest.mark.parametrize("key", ["parameters", "versions", "controller_digest"])
+def test_runs_of_another_kind_have_different_ids(make_test, make_results, key):
+    """Or in what was run."""
+    results = make_results(make_test())
+    other = conclude(results.tests, results.profiles, results.provenance | {key: {"other": 1}})
+    assert other.run_id != results.run_id

@@ -1,14 +1,12 @@
 """`pvlvrt-check controllers header`."""
 
-import sys
-
 
 def header() -> None:
     """Print the C header of the IEEE/CIGRE DLL interface (CIGRE TB 958), for controllers in C or C++.
 
     Example: pvlvrt-check controllers header > ieee_cigre.h
     """
-    sys.stdout.write(header_text())
+    print(header_text(), end="")
 
 
 def header_text() -> str:

@@ -4,26 +4,24 @@ import json
 import mmap
 import os
 import pickle
-import select
-import signal
 import sys
 import tempfile
-import traceback
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any, NoReturn
+from typing import IO, Any
 
 import numpy as np
 
+from pvlvrt_compliance import processes
 from pvlvrt_compliance.compiled.notes import tell_in_lines
 from pvlvrt_compliance.errors import PvlvrtError, SimulationError
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.doors.base import Door, Value
 from pvlvrt_compliance.simulation.doors.opening import door_to
-from pvlvrt_compliance.simulation.isolation import ANSWER, FORKS, JOB, PROGRESS, RECORD, SAID
+from pvlvrt_compliance.simulation.isolation import ANSWER, JOB, PROGRESS, RECORD, SAID
 from pvlvrt_compliance.simulation.recorder import RecordingPlan
 
 
@@ -49,7 +47,7 @@ class RunJob(DescribeJob):
 
 def main() -> None:
     """Serve: a line in, the folder of a job; lines out, `ready`, then `started PID` and `ended STATUS` for each."""
-    jobs = os.fdopen(os.dup(0), encoding="utf-8")
+    jobs = os.fdopen(os.dup(0), encoding="utf-8", errors="surrogateescape")
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     nothing = os.open(os.devnull, os.O_RDWR)
     os.dup2(nothing, 0)
@@ -61,7 +59,7 @@ def main() -> None:
     _say(answers, "ready")
     while line := jobs.readline():
         folder = Path(line.rstrip("\n"))
-        if FORKS:
+        if processes.FORKS:
             _fork(folder, jobs, answers)
         else:
             _say(answers, f"started {os.getpid()}")
@@ -75,42 +73,16 @@ def _say(answers: IO[str], line: str) -> None:
 
 def _fork(folder: Path, jobs: IO[str], answers: IO[str]) -> None:
     """Do a job in a copy of this process, which ends with it; and with the last reader of the answers."""
-    pid = os.fork()
-    if pid == 0:
-        os.setpgid(0, 0)
+
+    def work() -> None:
         os.close(jobs.fileno())
         os.close(answers.fileno())
-        _do_and_exit(folder)
-    _make_group(pid)
-    _say(answers, f"started {pid}")
-    ended = os.pidfd_open(pid)
-    try:
-        found, _, _ = select.select([ended, jobs.fileno()], [], [])
-        if ended not in found:  # the other side has gone: nobody sends a job before it has heard of the last
-            os.killpg(pid, signal.SIGKILL)
-        _, status = os.waitpid(pid, 0)
-    finally:
-        os.close(ended)
-        with suppress(OSError):
-            os.killpg(pid, signal.SIGKILL)  # what the controller has started ends with it
-    _say(answers, f"ended {os.waitstatus_to_exitcode(status)}")
-
-
-def _make_group(pid: int) -> None:
-    """Make the group of a copy before it is named to anybody; the copy does the same, whoever comes first."""
-    with suppress(OSError):
-        os.setpgid(pid, pid)
-
-
-def _do_and_exit(folder: Path) -> NoReturn:
-    """Do a job and end, whatever happens: a copy must never come back to the server's own loop."""
-    try:
         _do(folder)
-    except BaseException:
-        traceback.print_exc()
-        sys.stderr.flush()
-        os._exit(1)
-    os._exit(0)
+
+    # The other side sends no job before it has heard of the last: what ends is the other side.
+    status = processes.in_a_copy(work, lambda pid: _say(answers, f"started {pid}"), jobs.fileno())
+    with suppress(BrokenPipeError):  # it has gone
+        _say(answers, f"ended {status}")
 
 
 def _do(folder: Path) -> None:
@@ -149,5 +121,9 @@ def _use(door: Door, job: DescribeJob, folder: Path) -> dict[str, Any]:
     with (folder / PROGRESS).open("r+b") as file:
         progress: Any = np.frombuffer(mmap.mmap(file.fileno(), 0), dtype=np.float64)
     record = run_through(door, job.scenario, job.parameters, job.plan, progress)
-    np.save(folder / RECORD, record.samples)
+    try:
+        np.save(folder / RECORD, record.samples)
+    except OSError as error:
+        (folder / RECORD).unlink()  # room for the answer
+        raise SimulationError(f"{folder / RECORD} cannot be written: {error.strerror or error}") from None
     return {"channels": record.channels, "notes": record.notes}

@@ -1,0 +1,69 @@
+"""The command as a program, made to say where it is and to wait there: ``python paused.py PLACE ARGUMENTS...``.
+
+A number is the test before which it says `here` and waits for ever. `compiled` is inside the compiled loop of the first
+simulation, which says `here` when it is about to begin, and `over` when it has ended. With `twice` and `thrice` it
+waits before the third test, and the SIGTERM that ends it comes again, so many times in all, while it keeps what is
+finished.
+"""
+
+import signal
+import sys
+import threading
+
+import pvlvrt_compliance.simulation.simulate as simulation
+import pvlvrt_compliance.study.run as study_run
+from pvlvrt_compliance.cli.main import main
+from pvlvrt_compliance.study.store import OutputFolder
+
+
+def _say(word):
+    sys.stdout.write(f"{word}\n")
+    sys.stdout.flush()
+
+
+def _wait_before(number):
+    right, seen = study_run.run_test, []
+
+    def run_test(*arguments):
+        seen.append(arguments)
+        if len(seen) == number:
+            _say("here")
+            threading.Event().wait()
+        return right(*arguments)
+
+    study_run.run_test = run_test
+
+
+def _tell_of_simulation():
+    right = simulation.simulate
+
+    def simulate(*arguments):
+        _say("here")
+        record = right(*arguments)
+        _say("over")
+        return record
+
+    simulation.simulate = simulate
+
+
+def _disturb_keeping(times):
+    right = OutputFolder.keep_interrupted
+
+    def keep_interrupted(output):
+        for _ in range(times - 1):
+            signal.raise_signal(signal.SIGTERM)
+        return right(output)
+
+    OutputFolder.keep_interrupted = keep_interrupted
+    _wait_before(3)
+
+
+if __name__ == "__main__":
+    place = sys.argv.pop(1)
+    if place == "compiled":
+        _tell_of_simulation()
+    elif place in ("twice", "thrice"):
+        _disturb_keeping(2 if place == "twice" else 3)
+    else:
+        _wait_before(int(place))
+    main()

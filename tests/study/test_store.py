@@ -1,0 +1,237 @@
+"""The files in an output folder are those of one run, whatever happens to the next."""
+
+import itertools
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import small_runs
+
+from pvlvrt_compliance.errors import OutputError, UsageError
+from pvlvrt_compliance.study import store
+from pvlvrt_compliance.study.store import JUNIT, REPORT, RESULTS, OutputFolder
+
+ID = {name: small_runs.results_of(name).run_id for name in ("first", "second", "third", "earlier")}
+
+
+def names_in(folder):
+    """All files, with their folders."""
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+
+
+def files_of(name):
+    """Files of a small run."""
+    records = {f"waveforms/{test}.{ending}" for test in ("common", name) for ending in ("cfg", "dat")}
+    return {RESULTS, JUNIT, REPORT} | records
+
+
+def assert_no_mix(folder):
+    """Files of one run; where its results are, all of it is."""
+    found = small_runs.ids(folder)
+    assert len(set(found.values())) <= 1
+    if RESULTS in found:
+        assert_whole(folder, next(name for name in ID if ID[name] == found[RESULTS]))
+
+
+def assert_whole(folder, name):
+    """All files of a run, and of it alone."""
+    assert small_runs.ids(folder) == dict.fromkeys((RESULTS, JUNIT, REPORT), ID[name])
+    for test in json.loads((folder / RESULTS).read_text("utf-8"))["tests"]:
+        assert (folder / test["waveforms"]).read_text() == name
+        assert (folder / test["waveforms"]).with_suffix(".dat").read_text() == name
+
+
+def assert_foreign_stay(folder):
+    """What others have put there is as it was."""
+    assert {(folder / name).read_text() for name in small_runs.FOREIGN} == {"mine"}
+
+
+@pytest.fixture
+def begun(tmp_path):
+    """Folder with the first run, an interrupted one, and foreign files."""
+    small_runs.begin(tmp_path / "out")
+    return tmp_path / "out"
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="Windows cannot kill a process at a step of its own")
+def test_killed_at_every_step(tmp_path):
+    """Old run, new run or no results, never a mix; the next run finishes what was begun, and clears away the rest."""
+    subprocess.run([sys.executable, small_runs.__file__, str(tmp_path)], check=True)
+    folders = sorted((p for p in tmp_path.iterdir() if p.name != "begin"), key=lambda p: int(p.name))
+    assert len(folders) > 20
+    ends = []
+    for folder in folders:
+        assert_no_mix(folder)
+        assert_foreign_stay(folder)
+        OutputFolder(str(folder)).discard()
+        run = next(name for name in ID if ID[name] == small_runs.ids(folder).get(RESULTS))
+        ends.append(run)
+        assert_whole(folder, run)
+        assert names_in(folder) - set(small_runs.FOREIGN) == files_of(run) | (
+            {f"interrupted/{name}" for name in files_of("earlier") - {JUNIT, REPORT}} if run == "first" else set()
+        )
+        small_runs.stage(folder, "third").finish()
+        assert names_in(folder) == files_of("third") | set(small_runs.FOREIGN)
+    # Before the journal stands there the run is taken back, from then on it is finished.
+    assert [key for key, _ in itertools.groupby(ends)] == ["first", "second"]
+
+
+def _fail_at(monkeypatch, steps, error):
+    """Have these steps, counted from 0, of renaming and removing fail; a list that grows with the steps done."""
+    done = []
+
+    def failing(right):
+        def change(*arguments, **keywords):
+            done.append(arguments)
+            if len(done) - 1 in steps:
+                raise error
+            return right(*arguments, **keywords)
+
+        return change
+
+    for name in ("replace", "unlink"):
+        monkeypatch.setattr(os, name, failing(getattr(os, name)))
+    return done
+
+
+def _number_of_steps(folder):
+    with pytest.MonkeyPatch.context() as patch:
+        output = small_runs.stage(folder, "second")
+        done = _fail_at(patch, (), None)
+        output.finish()
+    return next(k for k, (path, *_) in enumerate(done) if Path(path).name == "journal.json") + 1
+
+
+@pytest.mark.parametrize("error", [PermissionError(13, "Permission denied"), KeyboardInterrupt()], ids=type)
+def test_failure_at_every_step(tmp_path, error):
+    """What cannot be put in place, or is interrupted there, is taken back as if it had never begun, and can be kept."""
+    small_runs.begin(tmp_path / "counted")
+    for step in range(_number_of_steps(tmp_path / "counted")):
+        folder = tmp_path / str(step)
+        small_runs.begin(folder)
+        output = small_runs.stage(folder, "second")
+        with pytest.MonkeyPatch.context() as patch:
+            _fail_at(patch, (step,), error)
+            with pytest.raises((OutputError, KeyboardInterrupt)):
+                output.finish()
+        assert not output.is_placed
+        assert not output.is_stuck
+        assert_whole(folder, "first")
+        assert_foreign_stay(folder)
+        small_runs.keep(output, "second")
+        assert small_runs.ids(folder / "interrupted")[RESULTS] == ID["second"]
+        assert_whole(folder, "first")
+        assert not list(folder.glob(".unfinished*"))
+
+
+def test_failure_that_cannot_be_taken_back(begun, monkeypatch):
+    """Then it is said who will put it right, nothing is a mix meanwhile, and the next run does put it right."""
+    output = small_runs.stage(begun, "second")
+    with monkeypatch.context() as patch:
+        _fail_at(patch, range(6, 999), PermissionError(13, "Permission denied"))
+        with pytest.raises(
+            OutputError, match=r"Permission denied; nor could what was there be put back .*next run into"
+        ):
+            output.finish()
+    assert output.is_stuck
+    output.discard()
+    assert_no_mix(begun)
+    following = OutputFolder(str(begun))
+    assert following.notes == [f"{begun}: a run that was stopped while its files were put in place is whole now"]
+    following.discard()
+    assert_whole(begun, "second")
+    assert_foreign_stay(begun)
+
+
+def test_one_run_at_a_time(begun):
+    """A second run into the folder is refused, with the process that has it, and disturbs nothing of the first."""
+    output = small_runs.stage(begun, "second")
+    with pytest.raises(UsageError) as error:
+        OutputFolder(str(begun))
+    assert str(error.value) == (
+        f"--output {begun}: another run (process {os.getpid()}) is writing there;"
+        " wait for its end, or name another folder"
+    )
+    output.finish()
+    assert_whole(begun, "second")
+
+
+def test_a_second_run_by_another_name_of_the_folder(begun, tmp_path):
+    """A link to the folder is the same folder."""
+    (tmp_path / "link").symlink_to(begun, target_is_directory=True)
+    output = small_runs.stage(begun, "second")
+    with pytest.raises(UsageError, match="another run"):
+        OutputFolder(str(tmp_path / "link"))
+    output.discard()
+
+
+def test_leftovers_are_cleared(begun):
+    """What killed runs have staged, of this version or of one before, is gone once the next one begins."""
+    for number in range(3):
+        (begun / f".unfinished-{number}" / "waveforms").mkdir(parents=True)
+        (begun / f".unfinished-{number}" / "waveforms" / "a.dat").write_text("half")
+    (begun / ".unfinished.lock").touch()
+    output = OutputFolder(str(begun))
+    assert [path for path in begun.glob(".unfinished-*")] == [output.staging]
+    output.discard()
+    assert not list(begun.glob(".unfinished*"))
+    assert_whole(begun, "first")
+
+
+@pytest.mark.parametrize("name", ["../outside.txt", "/tmp/outside.txt", "a/../../outside.txt", "C:outside", "a\\..\\b"])
+def test_a_journal_moves_nothing_outside(begun, name):
+    """A journal that somebody has put there can name no file outside the folder; it is thrown away."""
+    outside = begun.parent / "outside.txt"
+    outside.write_text("mine")
+    staging = begun / ".unfinished-theirs"
+    staging.mkdir()
+    (staging / "journal.json").write_text(json.dumps({"into": "", "withdrawn": [name], "placed": []}))
+    OutputFolder(str(begun)).discard()
+    assert outside.read_text() == "mine"
+    assert not staging.exists()
+    assert_whole(begun, "first")
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", '{"into": 3, "withdrawn": [], "placed": []}', '{"into": ""}'])
+def test_a_journal_that_is_none(begun, text):
+    """Garbage in a staging folder is cleared away with it."""
+    staging = begun / ".unfinished-theirs"
+    staging.mkdir()
+    (staging / "journal.json").write_text(text)
+    OutputFolder(str(begun)).discard()
+    assert not staging.exists()
+
+
+@pytest.mark.parametrize("name", [REPORT, JUNIT, RESULTS])
+def test_a_folder_in_the_way(tmp_path, name):
+    """A folder by the name of a report is told before anything is simulated, and stays."""
+    (tmp_path / name / "inside").mkdir(parents=True)
+    with pytest.raises(UsageError, match=f"a folder is in the way .*{name}"):
+        OutputFolder(str(tmp_path))
+    assert names_in(tmp_path) == set()
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+def test_a_file_in_the_way_of_the_waveforms(tmp_path):
+    """So is a file where the waveforms go."""
+    (tmp_path / "waveforms").write_text("mine")
+    with pytest.raises(UsageError, match=r"no files can be put there .*waveforms"):
+        OutputFolder(str(tmp_path))
+    assert names_in(tmp_path) == {"waveforms"}
+
+
+def test_waveforms_on_another_file_system(begun, monkeypatch):
+    """No file takes its place there in one step: that is told before anything is simulated."""
+    monkeypatch.setattr(store, "_device_of", lambda place: len(place.parts))
+    with pytest.raises(UsageError, match=r"another file system .*waveforms"):
+        OutputFolder(str(begun))
+    assert_whole(begun, "first")
+
+
+def test_nothing_stays_of_a_run_that_is_discarded(tmp_path):
+    """Not even the folders that were made for it."""
+    small_runs.stage(tmp_path / "deep" / "out", "first").discard()
+    assert list(tmp_path.iterdir()) == []
