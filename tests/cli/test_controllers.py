@@ -82,6 +82,7 @@ def test_project_in_python_gates(program, in_python):
     assert_gates(program, in_python, "controller.py:Controller")
 
 
+@pytest.mark.compiler
 @needs_gcc
 def test_project_in_c_gates(program, in_c):
     """So does the C controller, tied to the plant by the mapping file beside it."""
@@ -94,6 +95,7 @@ def test_project_of_an_fmu_gates(program, as_fmu):
     assert_gates(program, as_fmu, "./MyController.fmu")
 
 
+@pytest.mark.compiler
 @needs_gcc
 @pytest.mark.parametrize("phases", ["abc", "c"])
 def test_controllers_in_python_and_c_are_the_same(in_python, in_c, phases):
@@ -144,6 +146,7 @@ def test_inspect_for_programs(command, in_python):
     assert found["unmapped_inputs"] == found["missing_commands"] == []
 
 
+@pytest.mark.compiler
 @needs_gcc
 def test_inspect_in_words(command, in_c):
     """Ports with their units and what they are tied to, parameters with their ranges, sample time and plant step."""
@@ -157,6 +160,7 @@ def test_inspect_in_words(command, in_c):
     assert ended.out.splitlines()[-1].startswith("ready to run")
 
 
+@pytest.mark.compiler
 @needs_gcc
 def test_inspect_names_what_is_unmapped(command, in_c, tmp_path):
     """Without its mapping file, what a name does not say is listed with the reason; a run says it, too."""
@@ -176,6 +180,7 @@ def test_inspect_names_what_is_unmapped(command, in_c, tmp_path):
     assert "no output gives m_a. Tie them under [outputs] of a mapping file" in ended.err
 
 
+@pytest.mark.compiler
 @needs_gcc
 def test_fixed_plant_step_that_does_not_fit_is_refused(command, in_c):
     """So do inspection and run: the nearest possible steps are named."""

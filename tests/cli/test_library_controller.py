@@ -8,6 +8,8 @@ import pytest
 
 import pvlvrt_compliance
 
+pytestmark = pytest.mark.compiler
+
 ROOT = Path(__file__).resolve().parents[2]
 INTERFACE = Path(pvlvrt_compliance.__file__).parent / "simulation" / "doors"
 

@@ -1,8 +1,9 @@
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import invariants
+from draws import draws
 from pvlvrt_compliance.scenario.parameters import Parameters
 from records import record, without_trips
 
@@ -20,11 +21,11 @@ DRAWS = st.builds(
     window_start=st.floats(0, 0.9),
     window_length=st.floats(0, 1),
 )
-FEW = settings(deadline=None, max_examples=10, suppress_health_check=list(HealthCheck))
+FEW = draws(10)
 
 
 @given(DRAWS)
-@settings(deadline=None, max_examples=500, suppress_health_check=list(HealthCheck))
+@draws(500)
 def test_any_run_is_finite_and_keeps_its_energy(draw):
     """No value is not a number, energy balances within 1e-3 over any window, and the currents sum to zero."""
     broken = invariants.broken(draw)

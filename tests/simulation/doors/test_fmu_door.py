@@ -19,6 +19,8 @@ from pvlvrt_compliance.simulation.doors.fmu_door import FmuDoor
 from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
 from pvlvrt_compliance.simulation.simulate import simulate
 
+pytestmark = pytest.mark.compiler
+
 FOLDER = Path(__file__).parent
 SAME_START = ("simulation.settling_s=0.5", "simulation.synchronising_s=0")
 QUICK = parameters_from(("simulation.settling_s=0.02", "simulation.synchronising_s=0.01"))
