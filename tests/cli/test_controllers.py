@@ -15,7 +15,7 @@ from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
 
-needs_gcc = pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is not installed")
+needs_gcc = pytest.mark.skipif(None in map(shutil.which, ("gcc", "make")), reason="gcc or make is not installed")
 needs_pythonfmu = pytest.mark.skipif(
     find_spec("pythonfmu") is None or find_spec("fmpy") is None, reason="pythonfmu or fmpy is not installed"
 )
@@ -76,6 +76,7 @@ def assert_gates(program, folder, spec, *arguments):
     assert "fail: reactive_support" in red.out
 
 
+@pytest.mark.slow
 def test_project_in_python_gates(program, in_python):
     """The Python controller passes all four checks of the three-phase 50 % sag as the README says."""
     assert "controllers inspect controller.py:Controller" in (in_python / "README.md").read_text()
@@ -89,6 +90,7 @@ def test_project_in_c_gates(program, in_c):
     assert_gates(program, in_c, "./libcontroller.so")
 
 
+@pytest.mark.slow
 @needs_pythonfmu
 def test_project_of_an_fmu_gates(program, as_fmu):
     """So does the FMU made from the Python controller."""

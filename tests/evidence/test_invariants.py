@@ -37,6 +37,7 @@ JUMP_IN_A_SHORT_WINDOW = invariants.Draw(
 """Of 464 kW that cease within one step, half a step is a thousandth of what a cycle holds."""
 
 
+@pytest.mark.slow
 @given(DRAWS)
 @example(JUMP_IN_A_SHORT_WINDOW)
 @draws(500)

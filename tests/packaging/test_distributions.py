@@ -13,6 +13,8 @@ import pytest
 from pvlvrt_compliance.resources import resource_folder
 from waiting import PATIENCE_S
 
+pytestmark = pytest.mark.slow
+
 _NAME = "pvlvrt_compliance"
 _BUILT = {".so", ".o"}
 _LEFT_BY_TOOLS = {"__pycache__", "build", ".pytest_cache", ".hypothesis"}

@@ -67,6 +67,7 @@ def here(version):
     return fmpy.platform_tuple if version == 3 else fmpy.platform
 
 
+@pytest.mark.slow
 def test_bundled_controller_in_an_fmu(tmp_path):
     """An FMU that holds the bundled controller gives its waveforms within 1e-6."""
     simulator = ForeignSimulator(str(built(FOLDER / "bundled_fmu2.py", tmp_path / "made")))
