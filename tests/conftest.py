@@ -1,13 +1,25 @@
-"""Loops over time with one block replaced: wrong controllers and plants that tests tell from the right ones."""
+"""How property tests draw; and loops over time with one block replaced, that tests tell from the right one."""
 
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 
+import draws
 from pvlvrt_compliance import kernel as kernel_module
 from rebuild import Loop, rebuilt_loop
 from wrong_parts import WRONG_PARTS
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Search by hand: ``pytest -m hypothesis --search 2000``."""
+    words = f"let property tests draw so many fresh examples where they usually draw {draws.USUAL}"
+    parser.addoption("--search", type=int, metavar="EXAMPLES", help=words)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Every run draws the same, but for a search."""
+    draws.load_profile(config.getoption("--search"))
 
 
 @pytest.fixture(scope="session")

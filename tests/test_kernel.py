@@ -47,6 +47,7 @@ np.save(sys.argv[1], np.array(list(waveforms.segments[0].channels.values())))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("precision", "tolerance"), [("double", 1e-9), ("single", 2.0**-18)])
 def test_without_the_compiler_the_same_numbers_come_out(tmp_path, precision, tolerance):
     """NUMBA_DISABLE_JIT=1 runs the same kernels in Python, through a sag, to 1e-9 of the largest value.

@@ -3,9 +3,10 @@
 import tomllib
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.positions import key_lines
 from pvlvrt_compliance.resources import resource_folder
 
@@ -110,7 +111,7 @@ VALUES = st.recursive(
 )
 
 
-@settings(deadline=None, max_examples=100)
+@draws(100)
 @given(st.lists(VALUES, min_size=1, max_size=6))
 def test_a_key_after_any_value_is_found(values):
     """Whatever values stand before it, a key is on the line that begins with it."""
@@ -123,7 +124,7 @@ def test_a_key_after_any_value_is_found(values):
         assert text.splitlines()[key_lines(text)[(f"key{k}",)] - 1].startswith(f"key{k} =")
 
 
-@settings(deadline=None, max_examples=100)
+@draws(100)
 @given(st.text(alphabet="ab.=[]{}\"'#\n, \\", max_size=40))
 def test_a_text_that_is_no_toml_is_survived(text):
     """Anything at all gives some lines, never an exception."""

@@ -3,7 +3,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance import vectors
@@ -14,14 +14,12 @@ phasors = st.complex_numbers(max_magnitude=1e4)
 
 
 @given(phasors, phasors, phasors)
-@settings(deadline=None)
 def test_phases_undo_fortescue(a, b, c):
     """Symmetrical components add up to the phasors that they were taken from."""
     assert np.allclose(phases(*fortescue(a, b, c)), (a, b, c), atol=1e-9, rtol=0)
 
 
 @given(phasors, phasors, phasors)
-@settings(deadline=None)
 def test_fortescue_undoes_phases(positive, negative, zero):
     """Phases made of symmetrical components give these components back."""
     assert np.allclose(fortescue(*phases(positive, negative, zero)), (positive, negative, zero), atol=1e-9, rtol=0)
@@ -40,7 +38,6 @@ def test_sequences_of_a_single_phase_sag():
 
 
 @given(st.floats(0, 500), st.floats(-math.pi, math.pi))
-@settings(deadline=None)
 def test_a_balanced_set_turns_forward(amplitude, angle):
     """Balanced phases of amplitude A at the angle theta are the space vector sqrt(3/2) A exp(j theta)."""
     a, b, c = (amplitude * math.cos(angle - k * 2 * math.pi / 3) for k in range(3))
@@ -48,7 +45,6 @@ def test_a_balanced_set_turns_forward(amplitude, angle):
 
 
 @given(reals, reals, reals)
-@settings(deadline=None)
 def test_clarke_keeps_the_length_without_the_zero_sequence(a, b, c):
     """|u|^2 is the sum of the squares less what the zero sequence holds: the transform is power-invariant."""
     expected = a * a + b * b + c * c - (a + b + c) ** 2 / 3
@@ -56,7 +52,6 @@ def test_clarke_keeps_the_length_without_the_zero_sequence(a, b, c):
 
 
 @given(reals, reals, reals, reals, reals)
-@settings(deadline=None)
 def test_power_of_space_vectors_is_the_power_of_the_phases(u_a, u_b, u_c, i_a, i_b):
     """Re(u conj(i)) is the sum of the phase powers where the currents sum to zero, whatever the zero sequence of u."""
     i_c = -i_a - i_b
@@ -78,7 +73,6 @@ def test_scalars_and_arrays_are_one_formula():
 
 
 @given(reals, reals, reals)
-@settings(deadline=None)
 def test_the_compiled_forms_are_the_clarke_transform(in_python, a, b, c):
     """Vector of three phases and phases of a vector, as kernels use them: eq (1), and its inverse without zero."""
     z = in_python(vectors.vector_of)(vectors.Phases(a, b, c))

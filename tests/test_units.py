@@ -2,7 +2,7 @@ import contextlib
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.errors import UsageError
@@ -10,21 +10,18 @@ from pvlvrt_compliance.units import Nominal, parse_duration, parse_fraction
 
 
 @given(st.floats(0, 1))
-@settings(deadline=None)
 def test_a_fraction_is_read_as_written(value):
     """Any fraction from 0 to 1 that Python prints is read back unchanged."""
     assert parse_fraction(repr(value), "--sag") == value
 
 
 @given(st.floats(0, 100))
-@settings(deadline=None)
 def test_percent_is_a_hundredth(value):
     """With a percent sign the value is a hundredth of the number, blanks or not."""
     assert parse_fraction(f" {value!r} %", "--sag") == pytest.approx(value / 100)
 
 
 @given(st.floats(1, exclude_min=True, allow_infinity=False))
-@settings(deadline=None)
 def test_more_than_the_whole_is_refused(value):
     """A fraction above 1 is refused, and so is its negative, with the name of the option."""
     for text in (repr(value), repr(-value), f"{-value!r}%"):
@@ -46,7 +43,6 @@ def test_what_is_no_fraction_is_refused(text):
 
 
 @given(st.text(max_size=12))
-@settings(deadline=None)
 def test_any_text_is_a_value_or_a_usage_error(text):
     """No text makes the readers raise anything but a usage error, or return what is out of range."""
     with contextlib.suppress(UsageError):
@@ -56,7 +52,6 @@ def test_any_text_is_a_value_or_a_usage_error(text):
 
 
 @given(st.floats(1e-6, 1e6))
-@settings(deadline=None)
 def test_a_duration_in_seconds_and_milliseconds(value):
     """A duration is in seconds or in milliseconds, as its unit says."""
     assert parse_duration(f"{value!r}s", "--duration") == value
@@ -88,7 +83,6 @@ def test_the_bases_of_the_reference_plant():
 
 
 @given(st.floats(1, 1e9), st.floats(1, 1e6))
-@settings(deadline=None)
 def test_the_bases_belong_together(power_va, voltage_v):
     """Nominal voltage and current make the nominal power, as phase amplitudes, as space vectors and by Ohm's law."""
     n = Nominal(power_va, voltage_v)

@@ -9,6 +9,8 @@ import pytest
 
 from pvlvrt_compliance.simulation import loop
 
+pytestmark = pytest.mark.compiler
+
 
 @pytest.mark.parametrize(
     "name",

@@ -3,9 +3,10 @@
 from typing import Any
 
 import numpy as np
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.checks.evaluate import evaluate
 from pvlvrt_compliance.checks.results import Status
 from pvlvrt_compliance.profile import Profile, load_profile
@@ -103,7 +104,7 @@ def shortened(waveforms: Waveforms, part: float, thinning: tuple[float, int] | N
     return Waveforms(tuple(pieces))
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@draws(60, HealthCheck.function_scoped_fixture)
 @given(
     profile=st.sampled_from(PROFILES),
     sag=sags,

@@ -16,6 +16,7 @@ import lxml.html
 import pytest
 
 from pvlvrt_compliance.cli.main import run
+from waiting import PATIENCE_S
 
 PROGRAM = (sys.executable, "-m", "pvlvrt_compliance.cli.main")
 
@@ -96,7 +97,7 @@ def _program(*arguments: str | Path, cwd: Path | None = None, **environment: str
         env=surroundings(environment),
         stdin=subprocess.DEVNULL,
         capture_output=True,
-        timeout=300,
+        timeout=PATIENCE_S,
         check=False,
     )
     return Ended(done.returncode, done.stdout.decode("utf-8"), done.stderr.decode("utf-8"))

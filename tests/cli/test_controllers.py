@@ -15,7 +15,7 @@ from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
 
-needs_gcc = pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is not installed")
+needs_gcc = pytest.mark.skipif(None in map(shutil.which, ("gcc", "make")), reason="gcc or make is not installed")
 needs_pythonfmu = pytest.mark.skipif(
     find_spec("pythonfmu") is None or find_spec("fmpy") is None, reason="pythonfmu or fmpy is not installed"
 )
@@ -76,24 +76,28 @@ def assert_gates(program, folder, spec, *arguments):
     assert "fail: reactive_support" in red.out
 
 
+@pytest.mark.slow
 def test_project_in_python_gates(program, in_python):
     """The Python controller passes all four checks of the three-phase 50 % sag as the README says."""
     assert "controllers inspect controller.py:Controller" in (in_python / "README.md").read_text()
     assert_gates(program, in_python, "controller.py:Controller")
 
 
+@pytest.mark.compiler
 @needs_gcc
 def test_project_in_c_gates(program, in_c):
     """So does the C controller, tied to the plant by the mapping file beside it."""
     assert_gates(program, in_c, "./libcontroller.so")
 
 
+@pytest.mark.slow
 @needs_pythonfmu
 def test_project_of_an_fmu_gates(program, as_fmu):
     """So does the FMU made from the Python controller."""
     assert_gates(program, as_fmu, "./MyController.fmu")
 
 
+@pytest.mark.compiler
 @needs_gcc
 @pytest.mark.parametrize("phases", ["abc", "c"])
 def test_controllers_in_python_and_c_are_the_same(in_python, in_c, phases):
@@ -144,6 +148,7 @@ def test_inspect_for_programs(command, in_python):
     assert found["unmapped_inputs"] == found["missing_commands"] == []
 
 
+@pytest.mark.compiler
 @needs_gcc
 def test_inspect_in_words(command, in_c):
     """Ports with their units and what they are tied to, parameters with their ranges, sample time and plant step."""
@@ -157,6 +162,7 @@ def test_inspect_in_words(command, in_c):
     assert ended.out.splitlines()[-1].startswith("ready to run")
 
 
+@pytest.mark.compiler
 @needs_gcc
 def test_inspect_names_what_is_unmapped(command, in_c, tmp_path):
     """Without its mapping file, what a name does not say is listed with the reason; a run says it, too."""
@@ -176,6 +182,7 @@ def test_inspect_names_what_is_unmapped(command, in_c, tmp_path):
     assert "no output gives m_a. Tie them under [outputs] of a mapping file" in ended.err
 
 
+@pytest.mark.compiler
 @needs_gcc
 def test_fixed_plant_step_that_does_not_fit_is_refused(command, in_c):
     """So do inspection and run: the nearest possible steps are named."""

@@ -8,6 +8,8 @@ import pytest
 
 import pvlvrt_compliance
 
+pytestmark = pytest.mark.compiler
+
 ROOT = Path(__file__).resolve().parents[2]
 INTERFACE = Path(pvlvrt_compliance.__file__).parent / "simulation" / "doors"
 
@@ -36,6 +38,7 @@ def gate_of(folder):
     return words[1:-2]
 
 
+@pytest.mark.slow
 def test_bug_is_red_and_its_mending_green(examples, program, reports):
     """The negative sequence ignored breaks eq (5) and section 3.2 of the paper; without that line all is well."""
     folder = examples / "negative-sequence-bug"

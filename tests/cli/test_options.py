@@ -184,6 +184,7 @@ def test_set(judge):
     assert ended.status == 1
 
 
+@pytest.mark.slow
 def test_fidelity(judge):
     """--fidelity switched is simulation.fidelity: it stands in the report, and the losses show in the DC voltage."""
     _, reports = judge("--sag", "0%")

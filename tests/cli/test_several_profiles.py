@@ -104,6 +104,7 @@ def test_long_tests_are_left_out_and_named(command, reports, tmp_path):
     assert "--include-long" in alone.err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kept", "files"), [("all", 2), ("failed", 1), ("none", 0)])
 def test_which_waveforms_are_kept(command, reports, tmp_path, kept, files):
     """All, those of tests that are not passed, or none; a test without says so and still has its figure."""

@@ -102,6 +102,7 @@ def test_a_test_that_does_not_start_as_it_should(judge):
     assert {case.find("error").get("type") for case in reports.junit.iter("testcase")} == {"not_evaluated"}
 
 
+@pytest.mark.slow
 def test_reader_that_goes_away(tmp_path):
     """A reader that closes the pipe early (`| head`) does not change the verdict."""
     command = [sys.executable, "-m", "pvlvrt_compliance.cli.main", "--profile", "iec61400-21", "--sag", "90%"]

@@ -3,9 +3,10 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.control.current_references import current_references
 from pvlvrt_compliance.control.lvrt import lvrt_step
 from pvlvrt_compliance.units import Nominal
@@ -36,7 +37,7 @@ def over_a_cycle(references, V_pos, V_neg, angle, P, Q, params):
 
 
 @given(sequences, st.floats(0, 500e3), st.floats(0, 375e3))
-@settings(deadline=None, max_examples=50)
+@draws(50)
 def test_active_power_is_constant_and_the_mean_reactive_power_scaled(references, params, voltage, P, Q):
     """Eq (5) gives P = P* at every instant, and mean Q = Q* (V+^2 + V-^2)/(V+^2 - V-^2)."""
     V_pos, share, angle = voltage
@@ -48,7 +49,7 @@ def test_active_power_is_constant_and_the_mean_reactive_power_scaled(references,
 
 
 @given(st.floats(0.02, 0.849), st.floats(0, 0.95), st.floats(-math.pi, math.pi))
-@settings(deadline=None, max_examples=50)
+@draws(50)
 def test_the_long_axis_of_the_current_is_nominal_in_every_fault(references, logic, params, V_pos, share, angle):
     """With the powers of the LVRT logic |i+| + |i-| is the nominal current, so no phase exceeds it."""
     V_neg = share * V_pos

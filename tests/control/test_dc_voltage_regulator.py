@@ -2,7 +2,7 @@ import cmath
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.control.dc_voltage_regulator import (
@@ -48,7 +48,6 @@ def test_the_integral_does_not_wind_up(params, e, limit):
 
 
 @given(st.floats(-50, 50), st.floats(1e3, 400e3), st.floats(0, 400e3))
-@settings(deadline=None)
 def test_lifting_the_limit_is_bumpless(params, e, low, start):
     """When a limit is lifted P* goes on from where it was: by K_I e T, not by a step."""
     p, T = params.dc_voltage, params.T
@@ -58,7 +57,6 @@ def test_lifting_the_limit_is_bumpless(params, e, low, start):
 
 
 @given(st.floats(700, 1000), st.floats(0, 500e3))
-@settings(deadline=None)
 def test_the_settled_state_puts_out_what_it_was_settled_for(params, v_dc, P):
     """A run starts without a step of P*."""
     _, P_ref, limited = step(
@@ -69,7 +67,6 @@ def test_the_settled_state_puts_out_what_it_was_settled_for(params, v_dc, P):
 
 
 @given(st.floats(-1e3, 1e3), st.floats(-1e7, 1e7), st.floats(0, 500e3))
-@settings(deadline=None)
 def test_power_stays_within_its_limits(params, e, integral, limit):
     """P* is never negative and never above its limit."""
     _, P_ref, _ = step(DcVoltageRegulatorState(integral=integral), V_REF + e, V_REF, limit, params.dc_voltage, params.T)

@@ -2,7 +2,7 @@ import cmath
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.control.lvrt import lvrt_step, reactive_power_of_voltage
@@ -44,7 +44,6 @@ def test_powers_asked_for_in_a_sag(order, V_pos, V_neg, Q_kvar, P_kw):
 
 
 @given(st.floats(0, 0.849), st.floats(0, 1), st.floats(-math.pi, math.pi))
-@settings(deadline=None)
 def test_the_apparent_power_of_a_fault_is_used_in_full(order, V_pos, share, angle):
     """P_fault^2 + Q*^2 = S_fault^2 = ((V+ - V-) S)^2 in every sag, whatever the angle of the voltage."""
     found = order(V_pos, share * V_pos, angle)
@@ -54,7 +53,6 @@ def test_the_apparent_power_of_a_fault_is_used_in_full(order, V_pos, share, angl
 
 
 @given(st.floats(0.8500001, 1.5), st.floats(0, 1))
-@settings(deadline=None)
 def test_normal_operation_from_the_threshold_on(order, V_pos, share):
     """At and above 0.85 pu no fault is flagged: nominal power, no reactive power."""
     found = order(V_pos, share * V_pos)

@@ -2,7 +2,7 @@ import cmath
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.control.modulator import modulate
@@ -11,7 +11,6 @@ M_MAX = 3 / (2 * math.sqrt(2))
 
 
 @given(st.complex_numbers(max_magnitude=1e6), st.floats(0, 1100))
-@settings(deadline=None)
 def test_the_modulating_signal_stays_in_the_linear_range(in_python, params, m, v_dc):
     """|u_inv| = 2/3 v_DC |m| is at most v_DC/sqrt(2); the direction is kept, and small signals are untouched."""
     found = in_python(modulate)(m, 398 + 0j, v_dc, params.modulator)

@@ -6,7 +6,7 @@ import math
 import numba
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.control import dsc_pll, pll, srf_pll
@@ -42,7 +42,6 @@ def test_a_small_jump_of_the_angle_decays_as_designed(in_python, bandwidth_hz, d
 
 
 @given(st.floats(-math.pi, math.pi), st.floats(0, 2 * math.pi * 100), st.complex_numbers(max_magnitude=1e6))
-@settings(deadline=None)
 def test_the_frame_stays_on_the_circle_and_the_frequency_in_its_guard(in_python, theta, w, u):
     """Whatever it sees, the angle stays within a turn and the estimate within 40 to 70 Hz."""
     p = pll.design(10, 0.7, 40, 70, U)
@@ -67,7 +66,6 @@ def test_the_notch_has_its_transfer_function(in_python, K, w):
 
 
 @given(st.floats(1.0, 140.0), st.integers(0, 155), st.complex_numbers(max_magnitude=1e3))
-@settings(deadline=None)
 def test_a_delay_reads_between_samples(in_python, samples, k, slope):
     """A signal on a straight line comes back as it was, by a delay of any length, wherever the ring begins."""
     n = dsc_pll.samples_of_line(2 * math.pi * 40, T_REG)

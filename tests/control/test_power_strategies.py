@@ -5,9 +5,10 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.control import current_references as crg
 from pvlvrt_compliance.control.lvrt import lvrt_step
 from pvlvrt_compliance.units import Nominal
@@ -46,7 +47,7 @@ def swing(x):
 
 @pytest.mark.parametrize("strategy", CONSTANT_P)
 @given(voltage=voltages, power=powers)
-@settings(deadline=None, max_examples=25)
+@draws(25)
 def test_active_power_is_constant(references, strategy, voltage, power):
     """Strategies 1, 2 and 3 give P* at every instant of an unbalanced voltage."""
     u, i = references(strategy, voltage, *power)
@@ -55,7 +56,7 @@ def test_active_power_is_constant(references, strategy, voltage, power):
 
 @pytest.mark.parametrize("strategy", CONSTANT_Q)
 @given(voltage=voltages, power=powers)
-@settings(deadline=None, max_examples=25)
+@draws(25)
 def test_reactive_power_is_constant(references, strategy, voltage, power):
     """Strategies 1 and 4 give Q* at every instant of an unbalanced voltage."""
     u, i = references(strategy, voltage, *power)
@@ -63,7 +64,7 @@ def test_reactive_power_is_constant(references, strategy, voltage, power):
 
 
 @given(voltage=voltages, power=powers)
-@settings(deadline=None, max_examples=25)
+@draws(25)
 def test_the_means_of_the_fourth_and_fifth_are_what_is_asked_for(references, voltage, power):
     """What oscillates under strategies 4 and 5 does so about P* and Q*: only eq (5) gives another mean of Q."""
     for strategy in (crg.CONSTANT_Q, crg.BALANCED):
@@ -73,7 +74,7 @@ def test_the_means_of_the_fourth_and_fifth_are_what_is_asked_for(references, vol
 
 @pytest.mark.parametrize("strategy", SINUSOIDAL)
 @given(voltage=voltages, power=powers)
-@settings(deadline=None, max_examples=25)
+@draws(25)
 def test_currents_are_sinusoidal(references, strategy, voltage, power):
     """Strategies 3, 4 and 5 ask for the fundamental alone; of it the fifth for no negative sequence."""
     _, i = references(strategy, voltage, *power)
@@ -90,7 +91,7 @@ def test_they_are_one_on_a_balanced_grid(references, strategy):
 
 
 @given(voltage=voltages)
-@settings(deadline=None, max_examples=25)
+@draws(25)
 def test_the_first_strategy_has_a_series_of_odd_orders(references, voltage):
     """Its currents turn forwards at 1, 3, 5, ...: each order is r = |u-|/|u+| of the one before."""
     _, share, _ = voltage = (voltage[0], 0.6 * voltage[1], voltage[2])  # so that a cycle of samples resolves the series
@@ -101,7 +102,7 @@ def test_the_first_strategy_has_a_series_of_odd_orders(references, voltage):
 
 
 @given(share=st.floats(0.05, 0.9), angle=st.floats(-math.pi, math.pi))
-@settings(deadline=None, max_examples=25)
+@draws(25)
 def test_the_second_strategy_is_lighter_than_the_third(references, share, angle):
     """With r = |u-|/|u+| the swing of Q is r/sqrt(1-r^2) of P*, against 2r/(1-r^2) under strategy 3."""
     for strategy, expected in (
@@ -129,7 +130,7 @@ def largest(references, in_python, params):
 
 @pytest.mark.parametrize("strategy", ALL)
 @given(V_pos=st.floats(0.02, 0.849), share=st.floats(0, 0.95), angle=st.floats(-math.pi, math.pi))
-@settings(deadline=None, max_examples=40)
+@draws(40)
 def test_the_limit_of_eq_8_holds_for_all_but_the_second(largest, strategy, V_pos, share, angle):
     """With the powers of the LVRT logic four strategies ask for nominal current at most, the second for 1.15 of it."""
     limit = 1.15 if strategy == crg.CONSTANT_P_LIGHT_Q else 1.0

@@ -2,7 +2,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance import sogi
@@ -83,7 +83,6 @@ def test_resonator_has_the_transfer_function_of_eq_6(resonator_step, h, w_c):
 
 
 @given(st.floats(-10, 10), st.complex_numbers(max_magnitude=1e3), st.complex_numbers(max_magnitude=1e3))
-@settings(deadline=None)
 def test_an_undamped_pair_stays_on_the_unit_circle(sogi_step, angle, u, qu):
     """Without forcing a cell keeps its energy at any step, however long."""
     x = sogi_step(SogiState(u=u, qu=qu), 0j, turn(angle))
@@ -93,7 +92,6 @@ def test_an_undamped_pair_stays_on_the_unit_circle(sogi_step, angle, u, qu):
 
 
 @given(st.sampled_from([1, 5, 7, 11, 13]), st.floats(40, 70), st.floats(5e-6, 1e-4))
-@settings(deadline=None)
 def test_the_generator_is_stable_over_the_guarded_frequencies(sogi_step, h, frequency, T):
     """The poles of every quadrature generator are inside the unit circle."""
     angle = 2 * math.pi * h * frequency * T
@@ -110,7 +108,6 @@ def test_the_discrete_generator_converges_with_order_one(sogi_step):
 
 
 @given(st.complex_numbers(max_magnitude=1e3), st.complex_numbers(max_magnitude=1e3))
-@settings(deadline=None)
 def test_sequences_are_told_apart_by_their_quadrature(in_python, u_pos, u_neg):
     """A quadrature 90 degrees behind is -j u+ and +j u-: the sum and the difference give both back."""
     found = in_python(sogi.sequences)(SogiState(u=u_pos + u_neg, qu=-1j * u_pos + 1j * u_neg))
@@ -123,7 +120,6 @@ def test_a_locked_cell_has_positive_sequence_only(in_python):
 
 
 @given(st.floats(-1, 1))
-@settings(deadline=None)
 def test_turns_of_harmonics_come_from_one_sine(in_python, angle):
     """The recurrence gives cosine and sine of every multiple."""
     expected = [turn(h * angle) for h in (1, 5, 7, 11, 13)]

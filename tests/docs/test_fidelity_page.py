@@ -3,6 +3,10 @@
 import importlib.util
 from pathlib import Path
 
+import pytest
+
+pytestmark = pytest.mark.slow
+
 GENERATOR = Path(__file__).parents[2] / "docs" / "fidelity" / "generate.py"
 
 

@@ -4,7 +4,10 @@ import circuit
 from pvlvrt_compliance.scenario.parameters import Parameters
 from records import record
 
-pytestmark = pytest.mark.skipif(not circuit.installed(), reason="ngspice is missing (Debian package ngspice)")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not circuit.installed(), reason="ngspice is missing (Debian package ngspice)"),
+]
 
 
 @pytest.mark.parametrize("name", circuit.SAGS)

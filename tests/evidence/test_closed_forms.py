@@ -3,6 +3,8 @@ import pytest
 
 import closed_forms
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def comparison():

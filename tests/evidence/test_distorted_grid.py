@@ -5,6 +5,8 @@ import findings
 from distorted_grid import ANTIPHASE, GRIDS, IN_PHASE, NAMES, measured, on_distorted_grid, share_of_ripple
 from sequence_filters import frequency_ripple_hz, passed
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("scr", GRIDS)
 @pytest.mark.parametrize("file", [ANTIPHASE, IN_PHASE])

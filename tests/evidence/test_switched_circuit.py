@@ -6,6 +6,8 @@ import switched_circuit
 from pvlvrt_compliance.simulation.translate import control_period_s
 from ripple import FINE
 
+pytestmark = pytest.mark.slow
+
 needs_ngspice = pytest.mark.skipif(not circuit.installed(), reason="ngspice is missing (Debian package ngspice)")
 
 

@@ -47,6 +47,7 @@ def test_the_largest_power_is_where_the_voltage_has_two_solutions_in_one():
     assert math.isnan(weak_grids.voltage_at_power(1.001 * P, 2.0, 10.0))
 
 
+@pytest.mark.slow
 def test_the_tool_reports_the_loss():
     """The commands of the page: a trip below the limit, none above it, and no verdict on a grid that is too weak."""
     assert findings.checks_of(synchronism.LOSS)["ride_through"]["status"] == "fail"

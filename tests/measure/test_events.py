@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.errors import MeasurementError
@@ -72,7 +72,6 @@ def test_hysteresis_the_wrong_way_round(thresholds):
 
 
 @given(st.lists(st.floats(0, 1.5), max_size=60))
-@settings(deadline=None)
 def test_events_are_those_of_a_walk_through_the_samples(voltages):
     """A plain loop with one flag finds the same sags."""
     expected, start = [], None

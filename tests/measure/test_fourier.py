@@ -2,9 +2,10 @@ import cmath
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.measure.fourier import component, components, mean, one_cycle_mean, one_cycle_phasor
 from pvlvrt_compliance.waveforms import Segment
@@ -19,7 +20,7 @@ def first_value(frequency_hz, dt_s):
 
 
 @given(frequencies, angles, st.floats(0.01, 1e3))
-@settings(deadline=None, max_examples=40)
+@draws(40)
 def test_a_steady_sinusoid_has_a_constant_phasor(sinusoid, dt_s, frequency_hz, angle, amplitude):
     """A cos(wt + phi) gives A exp(j phi) at every sample after the first cycle, though a cycle is no whole number."""
     x = sinusoid(cmath.rect(amplitude, angle), frequency_hz, 1500)
@@ -28,7 +29,7 @@ def test_a_steady_sinusoid_has_a_constant_phasor(sinusoid, dt_s, frequency_hz, a
 
 
 @given(frequencies, angles, st.integers(2, 13))
-@settings(deadline=None, max_examples=40)
+@draws(40)
 def test_other_harmonics_are_rejected(sinusoid, dt_s, frequency_hz, angle, order):
     """A harmonic of unit amplitude, or a mean, leaves less than 2e-6 in the phasor of the fundamental."""
     x = 1 + sinusoid(cmath.rect(1, angle), order * frequency_hz, 1500)
@@ -63,7 +64,7 @@ def test_the_first_cycle_has_no_phasor(sinusoid, dt_s):
 
 
 @given(st.integers(600, 1400), st.floats(-10, 10))
-@settings(deadline=None, max_examples=30)
+@draws(30)
 def test_no_value_depends_on_the_future(sinusoid, dt_s, instant, step):
     """Changing the samples from an instant on leaves every value before it as it was."""
     x = sinusoid(1, 50, 1500)
@@ -83,7 +84,7 @@ def test_a_step_of_amplitude_is_a_ramp_of_one_cycle(dt_s):
 
 
 @given(frequencies, st.floats(-5, 5))
-@settings(deadline=None, max_examples=30)
+@draws(30)
 def test_the_one_cycle_mean_rejects_what_turns(sinusoid, dt_s, frequency_hz, level):
     """The mean over a cycle is the level; fundamental and double frequency leave nothing."""
     x = level + sinusoid(1, frequency_hz, 1500) + sinusoid(1j, 2 * frequency_hz, 1500)
@@ -97,7 +98,7 @@ def test_two_samples_a_cycle_are_too_few():
 
 
 @given(frequencies, angles, st.integers(1, 12), st.floats(0, 0.01))
-@settings(deadline=None, max_examples=60)
+@draws(60)
 def test_a_window_of_whole_cycles_wherever_it_starts(sinusoid, dt_s, frequency_hz, angle, cycles, start_s):
     """A window cut out of a record at whole cycles gives phasor and mean exactly, one sample more or fewer."""
     x = 2 + sinusoid(cmath.rect(3, angle), frequency_hz, 8000)

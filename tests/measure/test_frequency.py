@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.measure.frequency import frequency_before, fundamental_frequency, rocof_hz_s
 from pvlvrt_compliance.waveforms import Segment, Waveforms
@@ -16,7 +17,7 @@ HARMONICS = {5: (0, 30, 0), 7: (30j, 0, 0), 3: (0, 0, 20)}
     st.complex_numbers(min_magnitude=30, max_magnitude=330),
     st.complex_numbers(max_magnitude=25),
 )
-@settings(deadline=None, max_examples=60)
+@draws(60)
 def test_the_frequency_of_a_distorted_unbalanced_record(three_phase, segment, frequency_hz, nominal_hz, u_pos, u_neg):
     """Within 1e-3 Hz from 45 to 66 Hz, from either nominal frequency, with unbalance and 10 % of harmonics."""
     harmonics = {h: tuple(x * abs(u_pos) / 300 for x in s) for h, s in HARMONICS.items()}
@@ -74,7 +75,7 @@ def test_the_record_before_an_instant(three_phase, dt_s):
 
 
 @given(st.floats(-20, 20), st.floats(0.02, 0.5))
-@settings(deadline=None, max_examples=30)
+@draws(30)
 def test_the_rate_of_a_ramp(dt_s, rate_hz_s, window_s):
     """A straight line has its slope at every instant once the window has passed."""
     t = dt_s * np.arange(20000)

@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.measure.groups import (
     Spectrum,
@@ -43,7 +44,7 @@ def test_ten_cycles_or_twelve():
 
 
 @given(grids, st.dictionaries(st.integers(1, 505), st.complex_numbers(max_magnitude=30), max_size=8), st.floats(-9, 9))
-@settings(deadline=None, max_examples=25)
+@draws(25)
 def test_every_line_comes_back(sinusoid, dt_s, grid, content, level):
     """Lines are exact whatever the measured frequency, the synchronised window being no whole number of samples."""
     nominal_hz, frequency_hz = grid
@@ -118,7 +119,7 @@ def test_distortions_of_orders_and_of_groups(sinusoid, dt_s):
 
 
 @given(grids, st.floats(0, 20), st.floats(0, 20), st.floats(-20, 20), st.floats(0, 1000))
-@settings(deadline=None, max_examples=40)
+@draws(40)
 def test_total_rated_distortion(sinusoid, dt_s, grid, harmonic, between, level, fundamental):
     """The rms of 5th harmonic, an interharmonic and the mean over the rated current, however small the fundamental."""
     nominal_hz, frequency_hz = grid

@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.measure.harmonics import harmonic_amplitudes, thd_percent
 
@@ -15,7 +16,7 @@ def window(frequency_hz, cycles, dt_s):
 
 
 @given(st.floats(45, 66), st.integers(1, 12), spectra, st.integers(-1, 1), st.floats(-2, 2))
-@settings(deadline=None, max_examples=60)
+@draws(60)
 def test_every_harmonic_comes_back(sinusoid, dt_s, frequency_hz, cycles, spectrum, more, level):
     """All orders to the 40th are exact, of a window that is a sample longer or shorter than its whole cycles."""
     n = window(frequency_hz, cycles, dt_s) + more
@@ -27,7 +28,7 @@ def test_every_harmonic_comes_back(sinusoid, dt_s, frequency_hz, cycles, spectru
 
 
 @given(st.floats(45, 66), spectra)
-@settings(deadline=None, max_examples=30)
+@draws(30)
 def test_distortion_by_its_definition(sinusoid, dt_s, frequency_hz, spectrum):
     """The distortion is the root of the sum of the harmonics' squares over the fundamental; a mean does not count."""
     n = window(frequency_hz, 10, dt_s)

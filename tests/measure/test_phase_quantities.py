@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.measure.phase_quantities import line_to_line, line_to_line_amplitudes
 from pvlvrt_compliance.space_vectors import phases
@@ -11,7 +12,7 @@ phasors = st.complex_numbers(max_magnitude=400)
 
 
 @given(phasors, phasors, phasors, st.floats(45, 66))
-@settings(deadline=None, max_examples=30)
+@draws(30)
 def test_line_to_line_amplitudes(three_phase, segment, positive, negative, zero, frequency_hz):
     """|U_a - U_b| and so on of the phase phasors; the zero sequence plays no part."""
     record = segment(three_phase("u", (positive, negative, zero), frequency_hz, 1200))

@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.measure.fourier import component, mean
 from pvlvrt_compliance.measure.power import (
     instantaneous_power,
@@ -16,7 +17,7 @@ phasors = st.complex_numbers(max_magnitude=400)
 
 
 @given(phasors, phasors, phasors, phasors, phasors)
-@settings(deadline=None, max_examples=40)
+@draws(40)
 def test_mean_powers_of_sequences(three_phase, segment, dt_s, u_pos, u_neg, u_zero, i_pos, i_neg):
     """Mean p + jq = 3/2 (U+ conj(I+) + conj(U-) I-) in peak phasors; the zero sequence of u adds nothing."""
     channels = three_phase("u", (u_pos, u_neg, u_zero), 50, 2500) | three_phase("i", (i_pos, i_neg, 0), 50, 2500)
@@ -27,7 +28,7 @@ def test_mean_powers_of_sequences(three_phase, segment, dt_s, u_pos, u_neg, u_ze
 
 
 @given(phasors, phasors, phasors, phasors)
-@settings(deadline=None, max_examples=40)
+@draws(40)
 def test_oscillating_active_power_of_sequences(three_phase, segment, dt_s, u_pos, u_neg, i_pos, i_neg):
     """The double-frequency part of p is the phasor 3/2 (U+ I- + U- I+)."""
     channels = three_phase("u", (u_pos, u_neg, 0), 50, 2500) | three_phase("i", (i_pos, i_neg, 0), 50, 2500)
@@ -50,7 +51,7 @@ def sequences(positive, negative):
 
 
 @given(phasors, phasors, phasors, phasors)
-@settings(deadline=None, max_examples=40)
+@draws(40)
 def test_powers_of_sequences_add_to_the_mean(three_phase, segment, dt_s, u_pos, u_neg, i_pos, i_neg):
     """P+ + P- and Q+ + Q- are the means of p and q, each 3/2 |U| times its current where that has a direction."""
     record = segment(three_phase("u", (u_pos, u_neg, 0), 50, 2500) | three_phase("i", (i_pos, i_neg, 0), 50, 2500))
@@ -69,7 +70,6 @@ def test_powers_of_sequences_add_to_the_mean(three_phase, segment, dt_s, u_pos, 
 
 
 @given(st.complex_numbers(min_magnitude=10, max_magnitude=400), st.floats(1, 300))
-@settings(deadline=None)
 def test_support_behind_an_inductive_grid(source, current):
     """Positive reactive current raises |U+| and lowers |U-| by X I, whatever the angle of the voltage."""
     x = 0.01

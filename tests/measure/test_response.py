@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.measure.response import Band, step_response
 
@@ -12,7 +13,7 @@ levels = st.floats(-5, 5)
 
 
 @given(levels, levels.filter(lambda x: abs(x) > 0.1), st.floats(0.005, 0.1))
-@settings(deadline=None, max_examples=40)
+@draws(40)
 def test_a_first_order_lag(initial, change, tau):
     """10 % after tau ln(1/0.9), 90 % after tau ln 10, in the band from then on; up or down alike."""
     x = initial + change * np.where(T_S < 0, 0, 1 - np.exp(-T_S / tau))

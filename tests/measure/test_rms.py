@@ -1,14 +1,15 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.measure.rms import half_cycle_rms, sliding_rms
 
 
 @given(st.floats(45, 66), st.complex_numbers(min_magnitude=1, max_magnitude=400), st.floats(-50, 50), st.floats(0, 40))
-@settings(deadline=None, max_examples=40)
+@draws(40)
 def test_the_rms_of_a_distorted_wave(sinusoid, dt_s, frequency_hz, phasor, level, harmonic):
     """sqrt(level^2 + half the squares of the amplitudes), at every sample although a cycle is no whole number."""
     x = level + sinusoid(phasor, frequency_hz, 1500) + sinusoid(harmonic, 5 * frequency_hz, 1500)
@@ -66,7 +67,7 @@ def test_nothing_is_exactly_nothing(sinusoid, dt_s):
 
 
 @given(st.integers(600, 1400), st.floats(-10, 10))
-@settings(deadline=None, max_examples=20)
+@draws(20)
 def test_no_value_depends_on_the_future(sinusoid, dt_s, instant, step):
     """Changing the samples from an instant on leaves every value before it as it was."""
     x = sinusoid(1, 50, 1500)

@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.measure.sequences import phase_amplitudes, sequence_phasors
 from pvlvrt_compliance.space_vectors import phases
@@ -11,7 +12,7 @@ phasors = st.complex_numbers(max_magnitude=400)
 
 
 @given(phasors, phasors, phasors, st.floats(45, 66))
-@settings(deadline=None, max_examples=40)
+@draws(40)
 def test_sequences_come_back(three_phase, segment, positive, negative, zero, frequency_hz):
     """A record made of three sequences gives these sequences at every sample after the first cycle."""
     record = segment(three_phase("u", (positive, negative, zero), frequency_hz, 1200))
@@ -21,7 +22,7 @@ def test_sequences_come_back(three_phase, segment, positive, negative, zero, fre
 
 
 @given(phasors, phasors)
-@settings(deadline=None, max_examples=20)
+@draws(20)
 def test_phase_amplitudes_are_those_of_the_phasors(three_phase, segment, positive, negative):
     """Each phase's amplitude is that of the sum of its sequences, for currents too."""
     record = segment(three_phase("i", (positive, negative, 0), 50, 1200))

@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.measure.sequences import sequence_phasors
 from pvlvrt_compliance.measure.tracking import steering_frequency, tracked_frequency, tracked_sequences
@@ -54,7 +55,7 @@ def record(waves, dt_s, kind="u"):
     harmonics,
     st.floats(0, 3),
 )
-@settings(deadline=None, max_examples=40)
+@draws(40)
 def test_sequences_are_those_of_an_fft(dt_s, grid, positive, unbalance, zero, distortion, noise_v):
     """With harmonics, noise and unbalance, off nominal: 0.1 % of the largest sequence, and what the noise explains."""
     nominal_hz, frequency_hz = grid
@@ -71,7 +72,7 @@ def test_sequences_are_those_of_an_fft(dt_s, grid, positive, unbalance, zero, di
 
 
 @given(grids, st.complex_numbers(max_magnitude=0.6), harmonics)
-@settings(deadline=None, max_examples=30)
+@draws(30)
 def test_without_noise_the_figures_are_far_better(dt_s, grid, unbalance, distortion):
     """In a steady state without noise: sequences to 1e-5 of nominal and the frequency to 10 mHz."""
     nominal_hz, frequency_hz = grid
@@ -165,7 +166,7 @@ def test_a_record_that_starts_dead(dt_s):
 
 
 @given(st.integers(1200, 3900), st.floats(-300, 300))
-@settings(deadline=None, max_examples=20)
+@draws(20)
 def test_no_value_depends_on_the_future(dt_s, instant, step):
     """Changing the samples from an instant on leaves frequency and sequences before it as they were."""
     waves = voltages(dt_s * np.arange(4000), 48.3, (300, 90, 20), {5: (0, 30, 0)})

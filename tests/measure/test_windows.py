@@ -1,5 +1,5 @@
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.measure.windows import Span, WindowRules, Windows, standard_windows
@@ -14,7 +14,6 @@ def test_the_windows_of_the_main_job():
 
 
 @given(st.floats(45, 66), st.floats(0.001, 3), st.floats(0, 2))
-@settings(deadline=None)
 def test_windows_hold_whole_cycles_and_keep_their_ends(frequency_hz, duration_s, after_s):
     """Every window is a whole number of cycles that ends where the rules say, less than a cycle short of them."""
     clear_s = 0.3 + duration_s

@@ -11,6 +11,9 @@ from pathlib import Path
 import pytest
 
 from pvlvrt_compliance.resources import resource_folder
+from waiting import PATIENCE_S
+
+pytestmark = pytest.mark.slow
 
 _NAME = "pvlvrt_compliance"
 _BUILT = {".so", ".o"}
@@ -26,7 +29,7 @@ def _call(*command, cwd):
     """Run a program in an environment that does not lead back to this one."""
     inherited = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "VIRTUAL_ENV"))}
     return subprocess.run(
-        list(map(str, command)), cwd=cwd, env=inherited, capture_output=True, text=True, check=False, timeout=500
+        list(map(str, command)), cwd=cwd, env=inherited, capture_output=True, text=True, check=False, timeout=PATIENCE_S
     )
 
 

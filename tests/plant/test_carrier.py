@@ -2,9 +2,10 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.plant import carrier
 from pvlvrt_compliance.plant.inverter import M_MAX
 from pvlvrt_compliance.space_vectors import clarke
@@ -24,7 +25,6 @@ def triangle(t: float) -> float:
 
 
 @given(sizes, angles)
-@settings(deadline=None)
 def test_duties_are_within_the_period_over_the_whole_linear_range(in_python, size, angle):
     """Up to |u_inv| = v_DC / sqrt(2) no leg leaves 0 to 1, and the outer two lie equally far from the ends."""
     duty = in_python(carrier.duties)(modulating(size, angle))
@@ -33,7 +33,6 @@ def test_duties_are_within_the_period_over_the_whole_linear_range(in_python, siz
 
 
 @given(sizes, angles)
-@settings(deadline=None)
 def test_duties_mean_what_the_averaged_inverter_gives(in_python, size, angle):
     """The vector of the duties is 2/3 m: per volt of the link, the averaged voltage."""
     m = modulating(size, angle)
@@ -41,7 +40,7 @@ def test_duties_mean_what_the_averaged_inverter_gives(in_python, size, angle):
 
 
 @given(sizes, angles)
-@settings(deadline=None, max_examples=20)
+@draws(20)
 def test_a_leg_is_up_while_its_duty_exceeds_the_carrier(in_python, size, angle):
     """Pulses are what the comparison with the triangle gives, instant by instant."""
     m = modulating(size, angle)

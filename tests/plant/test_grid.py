@@ -2,7 +2,7 @@ import cmath
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.plant import grid
@@ -20,7 +20,6 @@ def source(in_python):
 
 
 @given(st.floats(0, 0.29), st.floats(47, 62))
-@settings(deadline=None)
 def test_a_step_later_is_the_source_of_that_instant(source, plant, t, frequency):
     """Turning step by step and looking up the instant agree."""
     p, tables = plant(frequency_hz=frequency)

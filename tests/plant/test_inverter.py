@@ -1,7 +1,7 @@
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.plant import inverter
@@ -10,7 +10,6 @@ vectors = st.complex_numbers(max_magnitude=2e3)
 
 
 @given(st.complex_numbers(max_magnitude=10), vectors, st.floats(0, 1100))
-@settings(deadline=None)
 def test_the_bridge_loses_no_power(in_python, m, i, v_dc):
     """What leaves the DC link enters the line: v_DC i_DC = Re(u_inv conj(i))."""
     bridge = in_python(inverter.modulated)(m, i, v_dc)
@@ -19,7 +18,6 @@ def test_the_bridge_loses_no_power(in_python, m, i, v_dc):
 
 
 @given(vectors, st.floats(600, 1100))
-@settings(deadline=None)
 def test_diodes_return_energy_to_the_link(in_python, i, v_dc):
     """A blocked bridge opposes the current and charges the link with the power that the current brings."""
     bridge = in_python(inverter.freewheeling)(i, v_dc)
@@ -31,7 +29,6 @@ def test_diodes_return_energy_to_the_link(in_python, i, v_dc):
 
 
 @given(st.complex_numbers(max_magnitude=1e3))
-@settings(deadline=None)
 def test_the_linear_range_ends_at_the_link_over_root_two(in_python, m):
     """However large the modulating signal, |u_inv| <= v_DC / sqrt(2)."""
     limited = in_python(inverter.limit_modulation)(m)

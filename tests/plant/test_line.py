@@ -2,7 +2,7 @@ import cmath
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.plant import line
@@ -12,7 +12,6 @@ voltages = st.complex_numbers(max_magnitude=1e3)
 
 
 @given(voltages, voltages, voltages, st.sampled_from([0.0, 1e-3, 0.5]), st.floats(1e-6, 1e-3))
-@settings(deadline=None)
 def test_a_step_is_the_exact_solution(in_python, i, u_inv, e, resistance, T):
     """Under constant voltages the current is i0 exp(-Rt/L) + (u/R)(1 - exp(-Rt/L)), at any step."""
     p = line.design(L, resistance, 0.0, 0.0, T)
@@ -36,7 +35,6 @@ def test_many_steps_are_one_long_step(in_python):
 
 
 @given(voltages, voltages, voltages, st.floats(0, 1e-3), st.floats(0, 0.1))
-@settings(deadline=None)
 def test_the_voltage_between_filter_and_grid(in_python, i, u_inv, e, L_g, R_g):
     """u_PCC = e + R_g i + L_g di/dt, and seen from the inverter u_inv - R i - L di/dt: both are one voltage."""
     found = in_python(line.pcc_voltage)(i, u_inv, e, line.design(L, R, L_g, R_g, T_S))
@@ -46,7 +44,6 @@ def test_the_voltage_between_filter_and_grid(in_python, i, u_inv, e, L_g, R_g):
 
 
 @given(st.sampled_from([0.0, 1e-3, 0.5]), st.lists(st.floats(0, 1), min_size=1, max_size=5))
-@settings(deadline=None)
 def test_parts_of_a_step_are_the_step(in_python, resistance, shares):
     """A step cut into parts of any lengths, under the same voltages, ends where the whole one ends."""
     p = line.design(L, resistance, 5e-5, 0.0, T_S)

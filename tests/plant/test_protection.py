@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.plant.protection import DC_OVERVOLTAGE, FREQUENCY, NO_TRIP, OVERCURRENT, UNDERVOLTAGE, exceeds
@@ -16,7 +16,6 @@ def turning(frequency_hz: float, seconds: float) -> np.ndarray:
 
 
 @given(st.floats(-np.pi, np.pi), st.floats(0.2, 3))
-@settings(deadline=None)
 def test_overcurrent_looks_at_the_largest_phase(in_python, angle, size):
     """The limit is met by the phase that is largest at that instant, whichever it is."""
     phases = [size * I_PU * np.cos(angle - 2 * np.pi * k / 3) for k in range(3)]

@@ -2,7 +2,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.errors import UsageError
@@ -85,7 +85,6 @@ def test_the_maximum_power_point_is_a_maximum(irradiance):
 
 
 @given(st.floats(0, 1100), st.floats(0, 1.5), st.floats(-5, 60))
-@settings(deadline=None)
 def test_the_junction_voltage_is_found_from_any_guess(in_python, v, G, guess):
     """Newton's iteration ends at the root of the single-diode equation wherever it starts."""
     array = at(25.0)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.profile import Envelope, SupportCurve
@@ -52,7 +52,6 @@ def test_steps_hold_until_the_next_point():
     assert [steps.time_of(u) for u in (0.0, 0.05, 0.3, 0.5, 0.85)] == [0, 0.2, 0.2, 1.0, None]
 
 
-@settings(deadline=None)
 @given(envelopes(), st.floats(0, 1.3))
 def test_time_and_level_agree(shape, u_pu):
     """Up to its time a voltage is nowhere below the envelope; just past it, it is."""
@@ -66,7 +65,6 @@ def test_time_and_level_agree(shape, u_pu):
         assert highest > u_pu
 
 
-@settings(deadline=None)
 @given(envelopes(), st.lists(st.floats(-1, 10), min_size=1, max_size=20))
 def test_levels_stay_between_the_points(shape, times_s):
     """Interpolation never leaves the range of the points, and arrays give what scalars give."""
@@ -77,7 +75,6 @@ def test_levels_stay_between_the_points(shape, times_s):
     assert levels.tolist() == [float(shape.voltage_at(t)) for t in times_s]
 
 
-@settings(deadline=None)
 @given(st.floats(0, 1))
 def test_eq_9(u_pu):
     """The shipped curve's points are eq (9) of the paper at every voltage."""

@@ -3,9 +3,10 @@
 import json
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.errors import ProfileError, PvlvrtError, UsageError
 from pvlvrt_compliance.profile import known_profiles, load_profile
 
@@ -259,7 +260,7 @@ def test_files_that_are_no_profiles(tmp_path, content, problem):
     assert any(problem in line for line in problems_of(str(file)))
 
 
-@settings(deadline=None, max_examples=60)
+@draws(60)
 @given(st.recursive(st.none() | st.booleans() | st.integers() | st.text(max_size=5), lambda x: st.lists(x, max_size=3)))
 def test_no_value_crashes_the_loader(tmp_path_factory, value):
     """Any TOML value in any place either loads or is a profile error, never another exception."""

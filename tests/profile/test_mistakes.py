@@ -8,12 +8,14 @@ import tracemalloc
 from typing import NamedTuple
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.errors import ProfileError, UsageError
 from pvlvrt_compliance.profile import load_profile
 from pvlvrt_compliance.report import profile_words
+from waiting import PATIENCE_S
 
 HERE = "# <-"
 
@@ -216,7 +218,7 @@ def test_the_program_ends_with_2(made, name):
     mistake = MISTAKES[name]
     path, line = made(mistake)
     program = [sys.executable, "-m", "pvlvrt_compliance.cli.main", "profiles", "check", str(path)]
-    done = subprocess.run(program, capture_output=True, text=True, check=False, timeout=60)
+    done = subprocess.run(program, capture_output=True, text=True, check=False, timeout=PATIENCE_S)
     assert (done.returncode, done.stdout) == (2, "")
     assert re.search(rf"^  {re.escape(f'{path}:{line}: ')}.*{re.escape(mistake.says)}", done.stderr, re.MULTILINE)
 
@@ -328,7 +330,7 @@ def test_texts_stay_texts(tmp_path, monkeypatch, write, text):
     assert [file.name for file in tmp_path.iterdir()] == ["mine.toml"]
 
 
-@settings(deadline=None, max_examples=100)
+@draws(100)
 @given(st.text(max_size=200))
 def test_any_file_is_answered(tmp_path_factory, text):
     """Any text at all is a profile error, with the file's name."""

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.errors import ProfileError, UsageError
@@ -140,7 +140,6 @@ def test_only_tests_that_run_count_as_unverified(iec):
     assert [n.split(":")[0] for n in iec.unverified({"VD3-partial-2"}) if n.startswith("tests ")] == ["tests VD3"]
 
 
-@settings(deadline=None)
 @given(st.lists(st.sampled_from(CONFIDENCES), min_size=1))
 def test_weakest_mark(marks):
     """The weakest mark is one of those given, and none given is weaker; chosen is the weakest of all."""

@@ -1,7 +1,7 @@
 import base64
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -11,7 +11,6 @@ signals = arrays(np.float64, st.integers(1, 400), elements=st.floats(-1e6, 1e6))
 
 
 @given(x=signals, buckets=st.integers(1, 60))
-@settings(deadline=None)
 def test_extremes_survive(x, buckets):
     """However short a peak is, the drawn trace reaches it; nothing is invented; the number of points is bounded."""
     trace = decimate(0.0, 1.0, x, buckets)
@@ -22,7 +21,6 @@ def test_extremes_survive(x, buckets):
 
 
 @given(x=signals, buckets=st.integers(1, 60), at=st.integers(0, 399))
-@settings(deadline=None)
 def test_a_spike_is_drawn_near_its_instant(x, buckets, at):
     """The point of a spike lies within its bucket."""
     x[at % len(x)] = 1e9

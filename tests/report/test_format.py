@@ -1,7 +1,7 @@
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.checks.results import Check, Status
@@ -12,7 +12,6 @@ units = st.sampled_from(["", "kvar", "pu", "%", "s", "furlong"])
 
 
 @given(value=finite, unit=units)
-@settings(deadline=None)
 def test_a_number_reads_back_close_to_its_value(value, unit):
     """What is printed is the value to the decimals of its unit, or to four significant digits."""
     text = spell.number(value, unit)
@@ -22,7 +21,6 @@ def test_a_number_reads_back_close_to_its_value(value, unit):
 
 
 @given(limit=st.floats(0.01, 1e4), margin=st.floats(1e-8, 1).map(lambda x: -x) | st.floats(1e-8, 1))
-@settings(deadline=None)
 def test_a_margin_never_reads_as_zero(limit, margin):
     """A verdict that fails by little still shows by how much, in all three numbers alike."""
     check = Check(check="x", status=Status.FAIL, measured=limit - margin, limit=limit, margin=margin, unit="pu")

@@ -9,9 +9,10 @@ import lxml.html
 import pytest
 
 from pvlvrt_compliance.report import html
+from waiting import PATIENCE_S
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-pytestmark = pytest.mark.skipif(BROWSER is None, reason="no chromium is installed")
+pytestmark = [pytest.mark.browser, pytest.mark.skipif(BROWSER is None, reason="no chromium is installed")]
 
 QUIET = [
     "--headless",
@@ -50,7 +51,7 @@ def _dom(page: str, folder: Path, *options: str):
     file.write_text(page, encoding="utf-8")
     command = [BROWSER, *QUIET, f"--user-data-dir={folder / 'profile'}", "--window-size=1280,1500"]
     command += ["--virtual-time-budget=2000", *options, "--dump-dom", file.as_uri()]
-    done = subprocess.run(command, capture_output=True, timeout=90, check=True)
+    done = subprocess.run(command, capture_output=True, timeout=PATIENCE_S, check=True)
     return lxml.html.document_fromstring(done.stdout.decode("utf-8"))
 
 

@@ -2,7 +2,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
@@ -34,7 +34,6 @@ def runs(draw):
 
 
 @given(results=runs())
-@settings(deadline=None)
 def test_valid_whatever_the_names_say(results):
     """Every run gives XML that the schema accepts, with each case named once and the totals of its cases."""
     root = etree.fromstring(junit.render(results))

@@ -5,9 +5,10 @@ import xml.etree.ElementTree as ET
 
 import lxml.html
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.checks.results import ProfileSummary
 from pvlvrt_compliance.profile import load_profile
 from pvlvrt_compliance.report import html
@@ -53,7 +54,7 @@ def scripts_of_the_report(make_test, make_results):
     return len(scripts(lxml.html.document_fromstring(html.render(make_results(make_test("mine")), {}))))
 
 
-@settings(deadline=None, max_examples=25)
+@draws(25)
 @given(TEXTS, TEXTS)
 def test_the_report_shows_them(make_test, make_results, profile_of, scripts_of_the_report, title, source):
     """Title and sources stand in the report as texts; no element comes of them."""
@@ -67,7 +68,7 @@ def test_the_report_shows_them(make_test, make_results, profile_of, scripts_of_t
     assert f"({source})" in shown
 
 
-@settings(deadline=None, max_examples=50)
+@draws(50)
 @given(TEXTS, TEXTS)
 def test_figure_and_words_show_them(profile_of, title, source):
     """A title is the text of the figure, which stays well-formed; words show title and source as they are."""

@@ -4,7 +4,7 @@ import json
 from contextlib import suppress
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.errors import UsageError
@@ -44,7 +44,6 @@ def test_every_parameter_can_be_set(name):
     assert parameters_from([f"{name}={text}"]) == DEFAULTS
 
 
-@settings(deadline=None)
 @given(st.floats(0, 1e9, allow_nan=False))
 def test_numbers_are_read_exactly(value):
     """A number arrives as written, and no other parameter moves."""
@@ -134,7 +133,6 @@ def test_all_problems_at_once():
         parameters_from(["controller.sogi_gain=-1", "protection.overcurrent_pu=-1"])
 
 
-@settings(deadline=None)
 @given(st.text(max_size=40))
 def test_any_text_is_read_or_refused(text):
     """No text that someone may type ends in anything but parameters or a usage error."""

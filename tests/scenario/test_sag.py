@@ -4,7 +4,7 @@ import cmath
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
@@ -15,7 +15,6 @@ from pvlvrt_compliance.space_vectors import phases
 DEPTHS = st.floats(0, 1)
 
 
-@settings(deadline=None)
 @given(DEPTHS)
 def test_three_phase_sag_is_balanced(depth):
     """All phases down to r: V+ = r, V- = V0 = 0."""
@@ -23,7 +22,6 @@ def test_three_phase_sag_is_balanced(depth):
     assert [abs(x) for x in sequences] == pytest.approx([1 - depth, 0, 0], abs=1e-12)
 
 
-@settings(deadline=None)
 @given(DEPTHS, st.sampled_from("abc"))
 def test_single_phase_sag(depth, phase):
     """One phase down to r: V+ = (2 + r)/3, V- = V0 = (1 - r)/3, whichever phase it is."""
@@ -32,7 +30,6 @@ def test_single_phase_sag(depth, phase):
     assert [abs(x) for x in sequences] == pytest.approx([(2 + r) / 3, depth / 3, depth / 3], abs=1e-12)
 
 
-@settings(deadline=None)
 @given(DEPTHS, st.sampled_from(PAIRS))
 def test_two_phases_to_neutral(depth, pair):
     """Two phases down to r against neutral: V+ = (1 + 2 r)/3, V- = V0 = (1 - r)/3."""
@@ -41,7 +38,6 @@ def test_two_phases_to_neutral(depth, pair):
     assert [abs(x) for x in sequences] == pytest.approx([(1 + 2 * r) / 3, depth / 3, depth / 3], abs=1e-12)
 
 
-@settings(deadline=None)
 @given(DEPTHS, st.sampled_from(PAIRS))
 def test_isolated_two_phase_sag(depth, pair):
     """The voltage between two phases down to r: V+ = (1 + r)/2, V- = (1 - r)/2, no zero sequence, third phase whole."""
@@ -55,7 +51,6 @@ def test_isolated_two_phase_sag(depth, pair):
     assert by_name[third] == pytest.approx(dict(zip("abc", Sag(depth=0).phasors_pu(), strict=True))[third])
 
 
-@settings(deadline=None)
 @given(DEPTHS, st.sampled_from(["abc", "a", "b", "c", *PAIRS]))
 def test_angles_stay(depth, names):
     """A sag to neutral changes magnitudes and no angle; the healthy phases keep theirs too."""
@@ -64,7 +59,6 @@ def test_angles_stay(depth, names):
         assert abs(sagged) == pytest.approx(1) or abs(sagged) == pytest.approx(1 - depth)
 
 
-@settings(deadline=None)
 @given(DEPTHS, st.sampled_from(PAIRS), st.booleans())
 def test_sequences_and_phasors_are_two_views(depth, pair, two_phase):
     """The phasors come back from their symmetrical components."""
@@ -142,14 +136,12 @@ TYPES = {
 }
 
 
-@settings(deadline=None)
 @given(DEPTHS, st.sampled_from(sorted(TYPES)))
 def test_types_a_to_g(depth, name):
     """Each of Bollen's types has the sequences that its definition gives."""
     assert Sag(depth=depth, type=name).sequences_pu() == pytest.approx(TYPES[name](1 - depth), abs=1e-12)
 
 
-@settings(deadline=None)
 @given(DEPTHS, st.sampled_from(sorted(TYPES)), st.sampled_from("abc"))
 def test_symmetrical_phase(depth, name, phase):
     """Another symmetrical phase gives the same three magnitudes, moved on."""
@@ -158,7 +150,6 @@ def test_symmetrical_phase(depth, name, phase):
     assert [abs(u) for u in Sag(depth=depth, type=name, phases=phase).phasors_pu()] == pytest.approx(moved)
 
 
-@settings(deadline=None)
 @given(DEPTHS, st.sampled_from([("B", 3.0, "Dyn11"), ("C", 1.0, "Dyn1"), ("E", 1.0, "Dyn5")]))
 def test_fault_beyond_a_delta_star_transformer(depth, case):
     """Through a delta-star transformer type B is seen as C with V = (1 + 2 V')/3, C as D, and E as F."""
@@ -169,7 +160,6 @@ def test_fault_beyond_a_delta_star_transformer(depth, case):
     assert sorted(map(abs, phases(*found))) == pytest.approx(sorted(map(abs, expected.phasors_pu())), abs=1e-9)
 
 
-@settings(deadline=None)
 @given(DEPTHS)
 def test_star_star_transformer(depth):
     """A star-star transformer takes the zero sequence away, and an earthed one takes nothing."""

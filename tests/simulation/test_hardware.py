@@ -113,6 +113,7 @@ def test_computation_delay_costs_the_margin():
     assert segment["connected"].min() == 0 or np.abs(segment["i_a_a"]).max() > 1.3 * NOMINAL_A
 
 
+@pytest.mark.slow
 def test_realistic_hardware_passes():
     """The paper's control passes its own sags with the tolerances, noise and resolution of ordinary hardware."""
     profile = load_profile("iec61400-21")

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.checks.evaluate import evaluate
@@ -50,7 +50,6 @@ def recorded(plan):
     st.floats(0.5, 3600),
     st.sampled_from([T_REG, 5e-6, 100e-6, 1e-3]),
 )
-@settings(deadline=None)
 def test_any_plan(instants, length_s, T_reg):
     """One grid from the first period to the last, all periods around each instant and at the end, not too many rows."""
     periods = int(length_s / T_reg) + 1

@@ -9,6 +9,8 @@ import table
 from mutants import MUTANTS, RIGHT
 from pvlvrt_compliance.profile.requirements import Requirements
 
+pytestmark = pytest.mark.slow
+
 GENERATOR = Path(__file__).parents[2] / "docs" / "mutations" / "generate.py"
 
 

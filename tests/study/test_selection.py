@@ -1,7 +1,7 @@
 """Which tests of a profile are run."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.errors import UsageError
@@ -37,7 +37,6 @@ def test_patterns_add_up():
     assert ids("VD2-full-1", "VD1-full-1", "VD1-full-?") == ["VD1-full-1", "VD1-full-2", "VD2-full-1"]
 
 
-@settings(deadline=None)
 @given(st.lists(st.sampled_from(IDS), min_size=1, unique=True))
 def test_exact_ids_select_themselves(names):
     """Any set of ids selects exactly these, whatever their order and case."""

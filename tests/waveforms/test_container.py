@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.errors import MeasurementError
@@ -16,7 +16,6 @@ def ramp(t0_s, dt_s, n):
 
 
 @given(st.floats(-0.01, 0.1), st.floats(-0.01, 0.1), st.floats(-5, 5))
-@settings(deadline=None)
 def test_a_slice_holds_the_samples_between_its_ends(start_s, stop_s, t0_s):
     """A slice holds exactly the samples with start <= t < stop, each at its own time still."""
     segment = ramp(t0_s, DT_S, 2000)

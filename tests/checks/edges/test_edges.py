@@ -30,6 +30,10 @@ WITHOUT_ENVELOPE = {"envelope_tolerance_pu"}
 """Numbers of ride-through that do nothing in a profile that has neither envelope nor regions."""
 
 
+LONG_S = 600.0
+"""A record that lasts longer takes seconds to be made and judged (s)."""
+
+
 class Case(NamedTuple):
     """An edge of a requirement in the first profile that has it."""
 
@@ -120,7 +124,10 @@ def records() -> Iterator[Any]:
     for case in CASES:
         for side in ("inside", "outside", "further"):
             if (made := getattr(case.edge, side)) is not None:
-                yield pytest.param(case, made, id=f"{case.profile.id}-{case.kind}-{case.edge.label}-{side}")
+                marks = [pytest.mark.slow] if made.duration_s > LONG_S else []
+                yield pytest.param(
+                    case, made, id=f"{case.profile.id}-{case.kind}-{case.edge.label}-{side}", marks=marks
+                )
 
 
 @pytest.mark.parametrize(("case", "made"), list(records()))

@@ -19,6 +19,8 @@ from pvlvrt_compliance.simulation.doors.fmu_door import FmuDoor
 from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
 from pvlvrt_compliance.simulation.simulate import simulate
 
+pytestmark = pytest.mark.compiler
+
 FOLDER = Path(__file__).parent
 SAME_START = ("simulation.settling_s=0.5", "simulation.synchronising_s=0")
 QUICK = parameters_from(("simulation.settling_s=0.02", "simulation.synchronising_s=0.01"))
@@ -65,6 +67,7 @@ def here(version):
     return fmpy.platform_tuple if version == 3 else fmpy.platform
 
 
+@pytest.mark.slow
 def test_bundled_controller_in_an_fmu(tmp_path):
     """An FMU that holds the bundled controller gives its waveforms within 1e-6."""
     simulator = ForeignSimulator(str(built(FOLDER / "bundled_fmu2.py", tmp_path / "made")))

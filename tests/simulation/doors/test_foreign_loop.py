@@ -20,6 +20,7 @@ def furthest(mine, theirs, names):
     return max(np.abs(a - b).max() / max(np.abs(b).max(), 1e-3) for a, b in pairs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sag", "settings"),
     [
@@ -38,6 +39,7 @@ def test_bundled_controller_through_the_python_door(opened, sag, settings):
     assert furthest(mine, simulate(scenario, parameters), BOTH_KNOW) < 1e-9
 
 
+@pytest.mark.slow
 def test_bundled_controller_on_the_switched_inverter(opened):
     """The same with every leg as it switches."""
     scenario = Scenario(sag=Sag(depth=0.9), duration_s=0.1, after_s=0.1)

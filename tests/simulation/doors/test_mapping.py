@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.simulation.doors.base import DoorError
@@ -73,7 +73,6 @@ def test_names_with_two_meanings_are_left_and_said_so(name):
 
 
 @given(st.text(max_size=20), st.integers(1, 4))
-@settings(deadline=None)
 def test_any_name_is_tied_to_what_there_is_or_to_nothing(name, width):
     """Whatever a controller calls its ports, inspection does not fail, and every element is accounted for."""
     mapped = map_inputs([port(name, width=width)], None, NOMINAL)
@@ -168,7 +167,6 @@ def test_elements_and_constants_of_a_wide_port():
 
 
 @given(st.floats(-1, 1), st.sampled_from(["", "%", "duty", "pu"]))
-@settings(deadline=None)
 def test_command_comes_back_from_its_unit(m, unit):
     """A modulating signal written in a unit is read as the same one; a duty cycle of one half is none."""
     mapping = MappingFile.model_validate({"outputs": {"d": {"command": "m_a", "unit": unit}}})

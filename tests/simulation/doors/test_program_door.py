@@ -21,6 +21,7 @@ from pvlvrt_compliance.simulation.doors.base import DoorError
 from pvlvrt_compliance.simulation.doors.program_hello import greeting, hello_in
 from pvlvrt_compliance.simulation.doors.program_link import command_of, link_to
 from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
+from waiting import PATIENCE_S, doubled
 
 FOLDER = Path(__file__).parent
 EXAMPLES = FOLDER.parents[2] / "examples"
@@ -58,6 +59,7 @@ def test_example_in_python_rides_through():
     assert_rides_through(record.segments[0])
 
 
+@pytest.mark.compiler
 def test_examples_are_alike(c_example):
     """The example in C, by packed frames, rides through and gives what the one in Python gives by lines of JSON."""
     scenario, parameters = Scenario(sag=Sag(depth=0.6, phases="c"), duration_s=0.1), parameters_from(())
@@ -108,7 +110,6 @@ def listening(mode):
     ("what", "reason"),
     [
         ("dies", "(?s)at 0.07.*ended with status 3.*no more sense"),
-        ("hangs", "(?s)at 0.07.*did not answer within 0.5 s"),
         ("garbage", "(?s)at 0.07.*(not a JSON object|beginning with b'what)"),
         ("twice", "(?s)at 0.07.*(more than the one line|more than one frame)"),
         ("half", "(?s)at 0.07.*ended with status 0"),
@@ -120,7 +121,20 @@ def listening(mode):
 def test_programs_that_fail(mode, what, reason):
     """Whatever a program does at 0.07 s ends the run there, with the reason."""
     with pytest.raises(SimulationError, match=reason):
-        ForeignSimulator(program(mode, what), {"reply_timeout_s": 0.5})(SHORT, QUICK)
+        ForeignSimulator(program(mode, what))(SHORT, QUICK)
+
+
+@pytest.mark.parametrize("mode", ["json", "binary"])
+def test_program_that_hangs(mode):
+    """A program that answers no more is given up after the time that is set, and told with the simulated time.
+
+    On a machine that has other things to do it may be late before; it is then given twice the time.
+    """
+    for limit_s in doubled(0.5):
+        with pytest.raises(SimulationError, match=f"(?s) at .*did not answer within {limit_s:g} s") as error:
+            ForeignSimulator(program(mode, "hangs"), {"reply_timeout_s": limit_s})(SHORT, QUICK)
+        if "at 0.07" in str(error.value):
+            return
 
 
 @pytest.mark.parametrize(
@@ -181,10 +195,10 @@ def test_nothing_there():
     """A program that cannot be started or reached is refused."""
     with pytest.raises(DoorError, match="cannot be started"):
         link_to("stdio:/no/such/program", 1.0)
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        port = server.getsockname()[1]
-    with pytest.raises(DoorError, match="nothing answers"):
-        link_to(f"tcp://127.0.0.1:{port}", 1.0)
+    with socket.socket() as taken:  # so that nobody else listens there meanwhile
+        taken.bind(("127.0.0.1", 0))
+        with pytest.raises(DoorError, match="nothing answers"):
+            link_to(f"tcp://127.0.0.1:{taken.getsockname()[1]}", PATIENCE_S)
 
 
 def test_command_is_not_for_a_shell():

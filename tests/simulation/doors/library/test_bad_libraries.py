@@ -12,9 +12,12 @@ from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
+from waiting import stopped_in_its_loop
+
+pytestmark = pytest.mark.compiler
 
 SCENARIO = Scenario(sag=Sag(depth=0.0), duration_s=0.1, after_s=0.1)
-QUICK = parameters_from(("simulation.settling_s=0.2", "simulation.synchronising_s=0.2", "simulation.time_limit_s=2"))
+QUICK = parameters_from(("simulation.settling_s=0.2", "simulation.synchronising_s=0.2"))
 WHEN = "0.0999 s"
 """Simulated time of what happens at 0.5 s of the controller's, which begins 2 x 4884 samples before the record."""
 
@@ -37,7 +40,6 @@ def misbehaving(compiled):
     [
         (CRASH, "the controller crashed (SIGSEGV) at"),
         (ABORT, "the controller crashed (SIGABRT) at"),
-        (LOOP, "the controller was stopped after 2 s of computing (simulation.time_limit_s) at"),
         (NAN, "a command of the controller is not a finite number at"),
         (TOO_LARGE, "a command of the controller is out of range at"),
         (ERROR, "the current measurement is implausible"),
@@ -51,6 +53,12 @@ def test_what_is_wrong_is_told_with_its_time(misbehaving, how, reason):
         misbehaving(how)(SCENARIO, QUICK)
     assert reason in str(error.value)
     assert WHEN in str(error.value)
+    assert misbehaving(NOTHING)(SCENARIO, QUICK).end_s > 0.4
+
+
+def test_endless_loop_is_stopped(misbehaving):
+    """A call that does not return is stopped at the limit that is set, and told with the simulated time."""
+    assert WHEN in stopped_in_its_loop(misbehaving(LOOP), SCENARIO, QUICK, WHEN)
     assert misbehaving(NOTHING)(SCENARIO, QUICK).end_s > 0.4
 
 

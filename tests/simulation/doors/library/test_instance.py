@@ -16,6 +16,8 @@ from pvlvrt_compliance.simulation.native_call import FUNCTION
 from pvlvrt_compliance.simulation.ports import gather, number_at, put_number
 from pvlvrt_compliance.units import Nominal
 
+pytestmark = pytest.mark.compiler
+
 SETTING = Setting(Nominal(), 750.0)
 LIMITS = {
     "of_char": (-128, 127),

@@ -16,6 +16,8 @@ from pvlvrt_compliance.simulation.doors.library_layout import (
     one_after_another,
 )
 
+pytestmark = pytest.mark.compiler
+
 STRUCTURES = {
     "Signal": SignalInfo,
     "Parameter": ParameterStructure,

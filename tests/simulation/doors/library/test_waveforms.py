@@ -12,6 +12,8 @@ from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.simulation.translate import nominal_of, pv_params
 
+pytestmark = pytest.mark.compiler
+
 TOLERANCE = 1e-9
 """Largest difference of a channel, of its largest value."""
 
