@@ -204,7 +204,11 @@ def at_end(function: Callable[[], None]) -> None:
 
 
 def leave(status: int) -> NoReturn:
-    """End the command, whatever its threads are at: a controller may hang, and compiled code hears no signal."""
+    """End the command, whatever its threads are at: a controller may hang, and compiled code hears no signal.
+
+    From here on a first signal asks for what is done already, and changes no status.
+    """
+    _command.signals = max(_command.signals, 1)
     for function in reversed(_command.ends):
         with suppress(Exception):
             function()

@@ -2,6 +2,7 @@
 
 import ast
 import os
+import signal
 import subprocess
 import sys
 from contextlib import suppress
@@ -125,6 +126,24 @@ def test_the_command_ends_what_its_children_have_left():
     with pytest.raises(ProcessLookupError):
         os.kill(orphan, 0)
     os.kill(before, 9)
+
+
+LEAVING = (
+    "import os, sys\n"
+    "from pvlvrt_compliance import processes\n"
+    "processes.become_the_command()\n"
+    "to_send = [int(sys.argv[1])]\n"
+    "processes.at_end(lambda: to_send and os.kill(os.getpid(), to_send.pop()))\n"
+    "processes.leave(7)\n"
+)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows cannot send a signal to one process")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["INT", "TERM"])
+def test_a_signal_at_the_end_changes_no_status(number):
+    """When all is written and only what was started is still to be ended, the verdict stands."""
+    done = subprocess.run([sys.executable, "-c", LEAVING, str(int(number))], capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (7, b"")
 
 
 LIBRARY = (
