@@ -146,26 +146,28 @@ class OutputFolder:
             begun = True
             placing.finish()
         except OSError as error:
-            raise OutputError(self._taken_back(placing, error)) from error
-        except BaseException:  # an interruption: it is either in its place by now or has never been there
+            said = f"{error.filename or self.folder} cannot be written: {error.strerror or error}"
+            raise OutputError(self._taken_back(placing, said)) from error
+        except BaseException as end:  # an interruption: it is either in its place by now or has never been there
             self.is_placed = begun and not placing.is_open
-            if placing.is_open:
-                placing.take_back()
+            said = self._taken_back(placing, "stopped while files were put in place")
+            if self.is_stuck:
+                raise OutputError(said) from end
             raise
         self.is_placed = True
 
-    def _taken_back(self, placing: Placing, error: OSError) -> str:
+    def _taken_back(self, placing: Placing, said: str) -> str:
         """What is to be said of a run that could not be put in place, after what had moved has been put back."""
-        said = f"{error.filename or self.folder} cannot be written: {error.strerror or error}"
+        self.is_stuck = placing.is_open  # until all is back: whatever happens meanwhile, what is aside is not removed
         try:
             if placing.is_open:
                 placing.take_back()
         except OSError as again:
-            self.is_stuck = True
             return (
                 f"{said}; nor could what was there be put back ({again.strerror or again}):"
                 f" the next run into {self.folder} finishes this one from {placing.staging}"
             )
+        self.is_stuck = False
         remove_empty([self.folder / placing.into / WAVEFORMS, *([self.folder / INTERRUPTED] if placing.into else [])])
         return said
 

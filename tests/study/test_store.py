@@ -79,15 +79,15 @@ def test_killed_at_every_step(tmp_path):
     assert [key for key, _ in itertools.groupby(ends)] == ["first", "second"]
 
 
-def _fail_at(monkeypatch, steps, error):
-    """Have these steps, counted from 0, of renaming and removing fail; a list that grows with the steps done."""
+def _fail_at(monkeypatch, errors):
+    """Have steps, counted from 0, of renaming and removing fail with errors; a list that grows with the steps done."""
     done = []
 
     def failing(right):
         def change(*arguments, **keywords):
             done.append(arguments)
-            if len(done) - 1 in steps:
-                raise error
+            if len(done) - 1 in errors:
+                raise errors[len(done) - 1]
             return right(*arguments, **keywords)
 
         return change
@@ -100,12 +100,15 @@ def _fail_at(monkeypatch, steps, error):
 def _number_of_steps(folder):
     with pytest.MonkeyPatch.context() as patch:
         output = small_runs.stage(folder, "second")
-        done = _fail_at(patch, (), None)
+        done = _fail_at(patch, {})
         output.finish()
     return next(k for k, (path, *_) in enumerate(done) if Path(path).name == "journal.json") + 1
 
 
-@pytest.mark.parametrize("error", [PermissionError(13, "Permission denied"), KeyboardInterrupt()], ids=type)
+NOT_ALLOWED = PermissionError(13, "Permission denied")
+
+
+@pytest.mark.parametrize("error", [NOT_ALLOWED, KeyboardInterrupt()], ids=type)
 def test_failure_at_every_step(tmp_path, error):
     """What cannot be put in place, or is interrupted there, is taken back as if it had never begun, and can be kept."""
     small_runs.begin(tmp_path / "counted")
@@ -114,7 +117,7 @@ def test_failure_at_every_step(tmp_path, error):
         small_runs.begin(folder)
         output = small_runs.stage(folder, "second")
         with pytest.MonkeyPatch.context() as patch:
-            _fail_at(patch, (step,), error)
+            _fail_at(patch, {step: error})
             with pytest.raises((OutputError, KeyboardInterrupt)):
                 output.finish()
         assert not output.is_placed
@@ -127,21 +130,36 @@ def test_failure_at_every_step(tmp_path, error):
         assert not list(folder.glob(".unfinished*"))
 
 
-def test_failure_that_cannot_be_taken_back(begun, monkeypatch):
+@pytest.mark.parametrize("error", [NOT_ALLOWED, KeyboardInterrupt()], ids=type)
+def test_failure_that_cannot_be_taken_back(begun, monkeypatch, error):
     """Then it is said who will put it right, nothing is a mix meanwhile, and the next run does put it right."""
     output = small_runs.stage(begun, "second")
     with monkeypatch.context() as patch:
-        _fail_at(patch, range(6, 999), PermissionError(13, "Permission denied"))
-        with pytest.raises(
-            OutputError, match=r"Permission denied; nor could what was there be put back .*next run into"
-        ):
+        _fail_at(patch, {6: error} | dict.fromkeys(range(7, 999), NOT_ALLOWED))
+        with pytest.raises(OutputError, match=r"; nor could what was there be put back .*next run into") as told:
             output.finish()
+    assert str(told.value).startswith("stopped while") == (error is not NOT_ALLOWED)
     assert output.is_stuck
     output.discard()
     assert_no_mix(begun)
     following = OutputFolder(str(begun))
     assert following.notes == [f"{begun}: a run that was stopped while its files were put in place is whole now"]
     following.discard()
+    assert_whole(begun, "second")
+    assert_foreign_stay(begun)
+
+
+def test_interruption_while_it_is_taken_back(begun, monkeypatch):
+    """What is half put back stays where it is, and the next run puts it right."""
+    output = small_runs.stage(begun, "second")
+    with monkeypatch.context() as patch:
+        _fail_at(patch, {6: NOT_ALLOWED, 8: KeyboardInterrupt()})
+        with pytest.raises(KeyboardInterrupt):
+            output.finish()
+    assert output.is_stuck
+    output.discard()
+    assert_no_mix(begun)
+    OutputFolder(str(begun)).discard()
     assert_whole(begun, "second")
     assert_foreign_stay(begun)
 
