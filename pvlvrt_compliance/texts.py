@@ -1,6 +1,23 @@
 """Names that are no text: the bytes of a file's name or an argument need not be UTF-8."""
 
+import codecs
+import io
 from typing import Any
+
+_HANDLER = "pvlvrt-names"
+
+
+def write_any_name(stream: io.TextIOWrapper) -> None:
+    """Have a stream write bytes that are no text as they are, and ``?`` for a character that its encoding lacks."""
+    codecs.register_error(_HANDLER, _bytes_or_mark)
+    stream.reconfigure(errors=_HANDLER)
+
+
+def _bytes_or_mark(error: UnicodeError) -> tuple[str | bytes, int]:
+    try:
+        return codecs.lookup_error("surrogateescape")(error)
+    except UnicodeError:
+        return codecs.lookup_error("replace")(error)
 
 
 def printable(text: str) -> str:

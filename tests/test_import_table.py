@@ -27,7 +27,7 @@ ALLOWED = {
     "processes": set(),
     "locks": set(),
     "texts": set(),
-    "compiled": {"errors"},
+    "compiled": {"errors", "texts"},
     "kernel": {"compiled"},
     "controllers": {"units"},  # what a user's own file imports
     "vectors": {"kernel", "space_vectors"},

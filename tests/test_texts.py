@@ -1,5 +1,6 @@
 """Names that need not be text."""
 
+import io
 import shlex
 import subprocess
 
@@ -7,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pvlvrt_compliance.texts import all_printable, printable, shell_word
+from pvlvrt_compliance.texts import all_printable, printable, shell_word, write_any_name
 
 
 @given(data=st.binary(max_size=20))
@@ -24,6 +25,19 @@ def test_whatever_a_name_holds_can_be_printed(data):
 def test_spelling(name, spelled):
     """A byte as in C, any other half of a character by its code."""
     assert printable(name) == spelled
+
+
+@pytest.mark.parametrize(
+    ("encoding", "written"), [("utf-8", b"\xff \xc3\xa9"), ("latin-1", b"\xff \xe9"), ("ascii", b"\xff ?")]
+)
+def test_a_stream_of_any_encoding(encoding, written):
+    """A name's bytes are written as they are, and what a stream cannot hold costs a mark, not the command."""
+    raw = io.BytesIO()
+    stream = io.TextIOWrapper(raw, encoding=encoding)
+    write_any_name(stream)
+    stream.write("\udcff é")
+    stream.flush()
+    assert raw.getvalue() == written
 
 
 def test_data_of_any_depth():

@@ -26,6 +26,7 @@ from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.study.provenance import created_at, provenance
 from pvlvrt_compliance.study.selection import Assignment
 from pvlvrt_compliance.study.store import JUNIT, REPORT, RESULTS, WAVEFORMS, OutputFolder
+from pvlvrt_compliance.texts import printable
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms import Waveforms
 from pvlvrt_compliance.waveforms.comtrade import write_comtrade
@@ -97,7 +98,7 @@ def _log(text: str) -> None:
     """Say on stderr why a run has ended early; in a file a line stays one line."""
     log = Console(stderr=True, highlight=False, markup=False, emoji=False)
     with suppress(OSError):
-        log.print(text, soft_wrap=not log.is_terminal)
+        log.print(printable(text), soft_wrap=not log.is_terminal)
 
 
 class _Run:

@@ -17,6 +17,7 @@ from pvlvrt_compliance.cli.telling import tell
 from pvlvrt_compliance.compiled.notes import tell_in_lines
 from pvlvrt_compliance.errors import OutputError, PvlvrtError, UsageError
 from pvlvrt_compliance.processes import STOPS, become_the_command, leave, status_of, words_of
+from pvlvrt_compliance.texts import write_any_name
 
 USAGE_STATUS = 2
 UNWRITTEN_STATUS = CRASHED_STATUS = 3
@@ -64,7 +65,7 @@ def main() -> None:
     tell_in_lines()
     become_the_command()
     if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="surrogateescape")  # a file's name need not be text
+        write_any_name(sys.stdout)
     try:
         status = _flushed(run(sys.argv[1:]))
     except Exception:

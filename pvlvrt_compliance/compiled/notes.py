@@ -5,6 +5,7 @@ from pathlib import Path
 
 from pvlvrt_compliance.compiled.checked_file import throw_away
 from pvlvrt_compliance.errors import CompiledCodeWarning
+from pvlvrt_compliance.texts import printable
 
 
 def discard(file: Path, why: object) -> None:
@@ -37,7 +38,7 @@ def tell_in_lines() -> None:
         message: Warning | str, category: type[Warning], filename: str, lineno: int, line: str | None = None
     ) -> str:
         if issubclass(category, CompiledCodeWarning):
-            return f"pvlvrt-check: {message}\n"
+            return f"pvlvrt-check: {printable(str(message))}\n"
         return others(message, category, filename, lineno, line)
 
     warnings.formatwarning = formatted

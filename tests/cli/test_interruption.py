@@ -180,6 +180,14 @@ def test_exit_zero_does_not_hide_an_interruption(command, interrupt_at, tmp_path
     assert command(*MAIN, "--exit-zero", "--output", tmp_path / "out").status == 130
 
 
+@pytest.mark.skipif(os.name == "nt", reason="names are text in Windows")
+def test_last_words_spell_a_name_that_is_no_text(command, interrupt_at, tmp_path):
+    """The line that says where finished tests are kept spells the bytes as all others do."""
+    interrupt_at(2)
+    ended = command("--profile", "iec61400-21", "--test", "VD3*", "--output", tmp_path / "\udcff")
+    assert ended.err.endswith(f"are kept in {tmp_path}/\\xff/interrupted\n")
+
+
 def test_interrupted_twice(command, reports, interrupt_at, folder):
     """What is kept is that of the last interrupted run."""
     for n in (3, 2):

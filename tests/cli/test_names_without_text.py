@@ -13,9 +13,9 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="names are text in Windo
 MISBEHAVING = Path(__file__).parents[1] / "simulation" / "doors" / "misbehaving.py"
 
 
-def _run(folder, *arguments):
+def _run(folder, *arguments, **environment):
     program = [sys.executable, "-m", "pvlvrt_compliance.cli.main", *arguments]
-    return subprocess.run(program, cwd=folder, capture_output=True, check=False)
+    return subprocess.run(program, cwd=folder, env=os.environ | environment, capture_output=True, check=False)
 
 
 @pytest.fixture
@@ -38,6 +38,14 @@ def test_profile_and_output(folder, reports):
     assert {p.get("value") for p in found.junit.iterfind(".//property[@name='command']")} == {command}
     words = subprocess.run(["bash", "-c", f"printf '%s\\n' {command}"], capture_output=True, check=True).stdout
     assert words.split(b"\n")[2:7:4] == [b"\xe9.toml", b"it's \xff"]
+
+
+def test_a_terminal_of_another_encoding(folder):
+    """A character that its encoding lacks costs a mark, and no traceback; the bytes of a name stay what they are."""
+    done = _run(folder, "profiles", "list", PYTHONIOENCODING="ascii", PVLVRT_PROFILES=str(folder))
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert b"\n\xe9 " in done.stdout
+    assert b"Rey-Bou? et al." in done.stdout
 
 
 def test_controller(folder, reports):

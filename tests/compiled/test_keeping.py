@@ -4,6 +4,7 @@ import errno
 import os
 import pickle
 import shutil
+import warnings
 from pathlib import Path
 
 import pytest
@@ -264,3 +265,14 @@ def test_each_kind_of_note_once(monkeypatch):
         "compiled code is not kept, so the next run compiles it anew: the disk is full",
         "nowhere: damaged (empty): thrown away and made anew",
     ]
+
+
+def test_a_line_of_the_command_spells_a_name_that_is_no_text(monkeypatch):
+    """A folder's name need not be text; another warning than these is none of the command's lines."""
+    monkeypatch.setattr(warnings, "formatwarning", warnings.formatwarning)
+    with warnings.catch_warnings():
+        notes.tell_in_lines()
+        line = warnings.formatwarning(CompiledCodeWarning("a\udcff"), CompiledCodeWarning, "file", 1)
+        other = warnings.formatwarning(UserWarning("b"), UserWarning, "file", 1)
+    assert line == "pvlvrt-check: a\\xff\n"
+    assert other.startswith("file:1: UserWarning: b")
