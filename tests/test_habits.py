@@ -10,6 +10,9 @@ FOLDER = Path(__file__).parent
 OWNER_OF_DRAWS = FOLDER / "support" / "draws.py"
 CLOCKS = {"perf_counter", "perf_counter_ns", "process_time", "thread_time", "time.time", "timeit", "time_ns"}
 LEAST_TIMEOUT_S = 60
+WAITING = {"wait", "join", "communicate", "result", "acquire"}
+OWNER_OF_PATIENCE = FOLDER / "support" / "waiting.py"
+SPELLINGS_OF_PATIENCE = ("PATIENCE_S", "SAFETY_S", "TIMEOUT_S", "DEADLINE_S")
 
 
 def name_of(node: ast.expr) -> str:
@@ -32,12 +35,26 @@ def calls(tree: ast.AST, inside_loop: bool = False) -> Iterator[tuple[ast.Call, 
 
 
 def too_short(call: ast.Call) -> bool:
-    """Whether a time-out is given that a busy machine may exceed."""
+    """Whether a time-out is given, by name or to a method that waits, that a busy machine may exceed."""
     limits = [word.value for word in call.keywords if word.arg == "timeout"]
-    return any(isinstance(x, ast.Constant) and x.value is not None and x.value < LEAST_TIMEOUT_S for x in limits)
+    limits += call.args if is_one_of(name_of(call.func), WAITING) else []
+    return any(isinstance(x, ast.Constant) and is_number(x.value) and x.value < LEAST_TIMEOUT_S for x in limits)
 
 
-def breaches(text: str, owns_draws: bool = False) -> list[str]:
+def is_number(value: object) -> bool:
+    """Whether a constant is a number, and no flag."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def limits_of_its_own(tree: ast.Module) -> Iterator[int]:
+    """Lines of constants that say how long to wait: there is one, in `OWNER_OF_PATIENCE`."""
+    for node in tree.body:
+        targets = node.targets if isinstance(node, ast.Assign) else []
+        if any(name_of(x).endswith(SPELLINGS_OF_PATIENCE) for x in targets) and isinstance(node.value, ast.Constant):
+            yield node.lineno
+
+
+def breaches(text: str, owns_draws: bool = False, owns_patience: bool = False) -> list[str]:
     """What a file does that no test may, by line."""
     tree = ast.parse(text)
     found = []
@@ -55,13 +72,17 @@ def breaches(text: str, owns_draws: bool = False) -> list[str]:
         if isinstance(node, ast.ImportFrom) and node.module == "hypothesis" and not owns_draws:
             names = {alias.name for alias in node.names} & {"settings", "seed"}
             found += [f"{node.lineno}: says itself how to draw; support/draws.py does" for _ in names]
+    if not owns_patience:
+        found += [f"{line}: a limit of its own; support/waiting.py has it" for line in limits_of_its_own(tree)]
     return found
 
 
 @pytest.mark.parametrize("file", sorted(FOLDER.rglob("*.py")), ids=lambda file: file.relative_to(FOLDER).as_posix())
 def test_no_test_depends_on_speed_or_luck(file):
     """None sleeps, measures time, gives up within a minute, or draws what is not drawn again."""
-    assert breaches(file.read_text("utf-8"), owns_draws=file == OWNER_OF_DRAWS) == []
+    # The least time-out that is allowed is what this file is about.
+    owns_patience = file in (OWNER_OF_PATIENCE, Path(__file__))
+    assert breaches(file.read_text("utf-8"), file == OWNER_OF_DRAWS, owns_patience) == []
 
 
 @pytest.mark.parametrize(
@@ -73,6 +94,9 @@ def test_no_test_depends_on_speed_or_luck(file):
         "assert time.perf_counter() - begin < 5",
         "began = time.time()",
         "process.wait(timeout=5)",
+        "process.wait(5)",
+        "thread.join(0.5)",
+        "SAFETY_S = 240",
         "rng = np.random.default_rng()",
         "random.Random().random()",
         "from hypothesis import given, settings",

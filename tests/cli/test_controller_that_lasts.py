@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from waiting import PATIENCE_S, wait_until
+
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells whose child an orphan was")
 
 CONTROLLER = Path(__file__).parents[1] / "simulation" / "doors" / "lasting.py"
-SAFETY_S = 240  # no test waits for it: it ends one that hangs
 
 
 @pytest.fixture
@@ -38,8 +39,8 @@ def start(tmp_path):
             text=True,
         )
         started.append(process)
-        while not pid_file.exists():
-            assert process.poll() is None, process.communicate()
+        wait_until(lambda: pid_file.exists() or process.poll() is not None, "the controller's child")
+        assert pid_file.exists(), process.communicate()
         return process, int(pid_file.read_text())
 
     yield start
@@ -59,7 +60,7 @@ def test_one_signal_ends_it_all(start, tmp_path, number, status):
     """The controller hangs in the one simulation: nothing is kept, no process, no folder."""
     process, child = start(hangs=True)
     process.send_signal(number)
-    out, err = process.communicate(timeout=SAFETY_S)
+    out, err = process.communicate(timeout=PATIENCE_S)
     assert (process.returncode, out) == (status, "")
     assert err.endswith("; 0 of 1 tests were finished, nothing was written\n")
     assert_gone(child)
@@ -70,7 +71,7 @@ def test_one_signal_ends_it_all(start, tmp_path, number, status):
 def test_the_end_of_the_run_is_the_end_of_its_children(start, tmp_path):
     """Without any signal, too."""
     process, child = start(hangs=False)
-    process.communicate(timeout=SAFETY_S)
+    process.communicate(timeout=PATIENCE_S)
     assert process.returncode in (1, 3)
     assert_gone(child)
     assert list((tmp_path / "tmp").iterdir()) == []
@@ -80,7 +81,7 @@ def test_what_a_killed_command_leaves_in_the_temporary_folder(start, program, tm
     """It is gone once the next run has begun, whatever controller that has."""
     process, child = start(hangs=True)
     process.kill()
-    process.communicate(timeout=SAFETY_S)
+    process.communicate(timeout=PATIENCE_S)
     os.kill(child, signal.SIGKILL)  # nobody is left who could
     assert len(list((tmp_path / "tmp").iterdir())) == 2
     arguments = ("--profile", "iec61400-21", "--sag", "90%", "--output", tmp_path / "out")
@@ -108,10 +109,10 @@ def test_one_signal_while_a_controller_is_opened(tmp_path, number, status, says)
         stderr=subprocess.PIPE,
         text=True,
     )
-    while not (tmp_path / "here").exists():
-        assert process.poll() is None, process.communicate()
+    wait_until(lambda: (tmp_path / "here").exists() or process.poll() is not None, "the controller's file")
+    assert (tmp_path / "here").exists(), process.communicate()
     process.send_signal(number)
-    _, err = process.communicate(timeout=SAFETY_S)
+    _, err = process.communicate(timeout=PATIENCE_S)
     assert (process.returncode, err) == (status, f"pvlvrt-check: {says}\n")
     assert list((tmp_path / "tmp").iterdir()) == []
     assert not (tmp_path / "out").exists()

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from pvlvrt_compliance.report import html
+from waiting import PATIENCE_S
 
 OLD = "<!doctype html><title>the report of the last whole run</title>"
 MAIN = ("--profile", "iec61400-21", "--sag", "90%")
@@ -29,7 +30,6 @@ ENDS = pytest.mark.parametrize(
     [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated (SIGTERM)")],
     ids=["SIGINT", "SIGTERM"],
 )
-SAFETY_S = 240  # no test waits for it: it ends one that hangs
 
 
 @pytest.fixture
@@ -48,7 +48,7 @@ def paused(tmp_path):
             stderr=subprocess.PIPE,
         )
         processes.append(process)
-        assert process.stdout.readline() == b"here\n", process.communicate(timeout=SAFETY_S)
+        assert process.stdout.readline() == b"here\n", process.communicate(timeout=PATIENCE_S)
         return process
 
     yield start
@@ -59,7 +59,7 @@ def paused(tmp_path):
 
 def ended(process):
     """Status, output and errors of a process that has been told to end."""
-    out, err = process.communicate(timeout=SAFETY_S)
+    out, err = process.communicate(timeout=PATIENCE_S)
     return process.returncode, out.decode(), err.decode()
 
 
