@@ -42,9 +42,9 @@ def execute(request: Request, job: Job) -> int:
     controller = _own_controller(request, job)
     told = len(controller.notes) if controller else 0
     run = _Run(request, job, created_at(), OutputFolder(request.output), controller)
-    for note in run.output.notes:
-        tell(note)
     try:
+        for note in run.output.notes:
+            tell(note)
         run.simulate()
         results = run.write_reports()
         run.output.finish()
@@ -59,6 +59,8 @@ def execute(request: Request, job: Job) -> int:
     except BaseException:
         _log(f"stopped by an error of the program; {run.keep_unfinished()}")
         raise
+    finally:
+        run.output.discard()  # a signal may have come while what was finished was kept
     _tell(controller.notes[told:] if controller else (), request)
     try:
         with suppress(SystemExit):  # rich ends the program when the reader of stdout has gone; the verdict still stands

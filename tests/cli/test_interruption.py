@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from pvlvrt_compliance.report import html
+from pvlvrt_compliance.study.store import OutputFolder
 from waiting import PATIENCE_S
 
 OLD = "<!doctype html><title>the report of the last whole run</title>"
@@ -196,6 +197,21 @@ def test_interrupted_twice(command, reports, interrupt_at, folder):
         assert ended.status == 130
         assert len(reports(folder / "interrupted").verdicts) == n - 1
     assert (folder / "report.html").read_text("utf-8") == OLD
+
+
+def test_interrupted_while_finished_tests_are_kept(command, monkeypatch, folder):
+    """After an error, too, nothing stays of a run that is stopped before it could keep anything."""
+
+    def fail(*_arguments):
+        raise OSError(28, "No space left on device")
+
+    def stop(_output, _records):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(html, "render", fail)
+    monkeypatch.setattr(OutputFolder, "drop_all_but", stop)
+    assert command(*MAIN, "--output", folder).status == 130
+    assert [p.name for p in folder.iterdir()] == ["report.html"]
 
 
 def test_crash_in_the_middle(command, reports, monkeypatch, folder):
