@@ -4,6 +4,7 @@ The command line turns them into one clear line and an exit status; library user
 """
 
 import difflib
+import errno
 from collections.abc import Iterable
 
 
@@ -39,7 +40,7 @@ class SimulationError(PvlvrtError):
 
 
 class OutputError(PvlvrtError):
-    """A file of a run cannot be written (exit status 3)."""
+    """A file cannot be written though its place is a right one (exit status 3)."""
 
 
 class MeasurementError(PvlvrtError):
@@ -48,6 +49,14 @@ class MeasurementError(PvlvrtError):
 
 class CompiledCodeWarning(UserWarning):
     """Compiled code is not kept, or what was kept is damaged: that costs time and changes no verdict."""
+
+
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+
+
+def unwritable(message: str, error: OSError) -> PvlvrtError:
+    """The error for a file that cannot be written: `OutputError` for want of room, else the place is a wrong one."""
+    return OutputError(message) if error.errno in _NO_ROOM else UsageError(message)
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:

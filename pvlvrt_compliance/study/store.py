@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from pvlvrt_compliance.errors import OutputError, UsageError
+from pvlvrt_compliance.errors import OutputError, UsageError, unwritable
 from pvlvrt_compliance.locks import Lock, holder_of, take_lock
 from pvlvrt_compliance.study.placing import Placing, begun_in, in_order, remove, remove_empty
 
@@ -36,6 +36,8 @@ class OutputFolder:
     ------
     UsageError
         When nothing can be written there, or another run is writing there.
+    OutputError
+        When there is no room for a file.
     """
 
     def __init__(self, folder: str) -> None:
@@ -57,7 +59,8 @@ class OutputFolder:
         except OSError as error:
             self.discard()
             place = f" ({error.filename})" if error.filename and Path(error.filename) != self.folder else ""
-            raise UsageError(f"--output {folder}: cannot be written: {error.strerror or error}{place}") from None
+            said = f"--output {folder}: cannot be written: {error.strerror or error}{place}"
+            raise unwritable(said, error) from None
         except BaseException:
             self.discard()
             raise

@@ -1,5 +1,6 @@
 """The files in an output folder are those of one run, whatever happens to the next."""
 
+import errno
 import itertools
 import json
 import os
@@ -252,4 +253,17 @@ def test_waveforms_on_another_file_system(begun, monkeypatch):
 def test_nothing_stays_of_a_run_that_is_discarded(tmp_path):
     """Not even the folders that were made for it."""
     small_runs.stage(tmp_path / "deep" / "out", "first").discard()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_no_room_at_the_beginning(tmp_path, monkeypatch):
+    """A full disk is no wrong usage, and is told before anything is simulated."""
+
+    def fail(*_arguments, **_keywords):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(store.tempfile, "mkdtemp", fail)
+    with pytest.raises(OutputError) as error:
+        OutputFolder(str(tmp_path / "out"))
+    assert str(error.value) == f"--output {tmp_path / 'out'}: cannot be written: No space left on device"
     assert list(tmp_path.iterdir()) == []

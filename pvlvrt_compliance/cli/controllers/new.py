@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from pvlvrt_compliance.cli.writing import write_new
 from pvlvrt_compliance.errors import UsageError, did_you_mean
 
 KINDS = ("python", "c", "fmu")
@@ -25,14 +26,9 @@ def new(
         raise UsageError(f"--kind {kind}: allowed are {', '.join(KINDS)}{did_you_mean(kind, KINDS)}")
     files = {Path(folder) / name: content for name, content in _content(kind).items()}
     _refuse_existing(files)
-    try:
-        for file, content in files.items():
-            file.parent.mkdir(parents=True, exist_ok=True)
-            with file.open("xb") as opened:
-                opened.write(content)
-            print(file)
-    except OSError as error:
-        raise UsageError(f"{error.filename}: cannot be written ({error.strerror})") from None
+    write_new(files, with_folders=True)
+    for file in files:
+        print(file)
 
 
 def _content(kind: str) -> dict[str, bytes]:

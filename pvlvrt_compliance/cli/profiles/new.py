@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from pvlvrt_compliance.cli.writing import write_new
 from pvlvrt_compliance.errors import UsageError
 
 _ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
@@ -31,11 +32,5 @@ def new(
         print(text, end="")
         return
     file = Path(name).with_name(f"{identity}.toml")
-    try:
-        with file.open("x", encoding="utf-8") as opened:
-            opened.write(text)
-    except FileExistsError:
-        raise UsageError(f"{file} is there already and is left as it is") from None
-    except OSError as error:
-        raise UsageError(f"{file} cannot be written ({error.strerror})") from None
+    write_new({file: text.encode()})
     print(file)

@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.cli.writing import write_over
+from pvlvrt_compliance.errors import UsageError, unwritable
 
 _FORMATS = (".svg", ".png", ".html")
 _SCALES = ("linear", "log")
@@ -38,7 +39,7 @@ def plot(
     render = getattr(profile_figure, f"render_{file.suffix.lower()[1:]}")
     content = render(profile, scale or None)
     try:
-        file.write_bytes(content if isinstance(content, bytes) else content.encode())
+        write_over(file, content if isinstance(content, bytes) else content.encode())
     except OSError as error:
-        raise UsageError(f"--output {file}: cannot be written ({error.strerror})") from None
+        raise unwritable(f"--output {file}: cannot be written ({error.strerror})", error) from None
     print(file)
