@@ -24,7 +24,6 @@ DOORS = ROOT / "tests" / "simulation" / "doors"
 sys.path.insert(0, str(DOORS))
 from fmu_sources import compiled, description, packed  # noqa: E402
 
-from pvlvrt_compliance.simulation.doors.base import Setting  # noqa: E402
 from pvlvrt_compliance.simulation.doors.opening import door_to  # noqa: E402
 from pvlvrt_compliance.simulation.native_call import call_address  # noqa: E402
 from pvlvrt_compliance.units import Nominal  # noqa: E402
@@ -51,7 +50,7 @@ def call_often(address: int, argument: int, calls: int) -> int:
 def cost_us(spec: str, calls: int, repeats: int) -> float:
     """Time of one control step through a door (us)."""
     door = door_to(spec, {})
-    opened = door.open(Setting(Nominal(), 807.0))
+    opened = door.open(Nominal())
     times = []
     try:
         for count in [10] + repeats * [calls]:

@@ -26,7 +26,7 @@ from pvlvrt_compliance.plant.plant import PlantState
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
-from pvlvrt_compliance.simulation.doors.base import DoorCall, Setting
+from pvlvrt_compliance.simulation.doors.base import DoorCall
 from pvlvrt_compliance.simulation.doors.library_door import LibraryDoor
 from pvlvrt_compliance.simulation.exchange import DoorTable, call, commanded, hold, put_signals
 from pvlvrt_compliance.simulation.foreign_run import door_table
@@ -103,7 +103,7 @@ def time_step(library: Path, repeat: Any, pairs: int) -> Step:
     start = steady_state(plant, grid, controller_params(parameters, _TEST), _TEST, 0.0)
     seen = Measured(u_g_ab=start.u_g_ab, i_ab=start.plant.i, v_dc=start.plant.v_dc, i_pv=start.plant.i_pv)
     door = LibraryDoor(str(library), {})
-    opened: DoorCall = door.open(Setting(Nominal(), start.plant.v_dc))
+    opened: DoorCall = door.open(Nominal())
     table = door_table(opened, Nominal(), 0.0)
     if begin(table, seen, start.plant, start.m) != COMPLETED:
         raise RuntimeError(door.message())

@@ -22,7 +22,7 @@ static inline void record(double *row, const PlantState *x, const Observed *y, c
     row = record_phases(row, y->u0_ab, y->u_zero);
     row = record_phases(row, x->i, 0.0);
     const double rest[] = {
-        x->v_dc,  x->i_pv,           1000.0 * G,       x->closed,  s->V_fault, s->fault, s->w / (2 * PI),
+        x->v_dc,  x->i_pv,           1000.0 * G,       x->closed,  x->trip, s->V_fault, s->fault, s->w / (2 * PI),
         s->v_ref, s->P_ref,          s->Q_ref,         creal(s->i_ref), cimag(s->i_ref), creal(s->m), cimag(s->m),
     };
     _Static_assert(9 + sizeof rest / sizeof *rest == CHANNELS, "one number a channel");

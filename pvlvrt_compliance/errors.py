@@ -5,7 +5,9 @@ The command line turns them into one clear line and an exit status; library user
 
 import difflib
 import errno
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+
+_MOST_LISTED = 100
 
 
 class PvlvrtError(Exception):
@@ -30,9 +32,7 @@ class ProfileError(PvlvrtError):
     def __init__(self, origin: str, problems: Iterable[str]) -> None:
         self.origin = origin
         self.problems = tuple(problems)
-        count = len(self.problems)
-        head = f"{origin}: {count} problem{'s' if count != 1 else ''}"
-        super().__init__("\n".join([head, *(f"  {p}" for p in self.problems)]))
+        super().__init__(listed(origin, self.problems))
 
 
 class SimulationError(PvlvrtError):
@@ -49,6 +49,14 @@ class MeasurementError(PvlvrtError):
 
 class CompiledCodeWarning(UserWarning):
     """Compiled code is not kept, or what was kept is damaged: that costs time and changes no verdict."""
+
+
+def listed(origin: str, problems: Sequence[str]) -> str:
+    """Problems of a file as one text: how many there are, then one a line, the first hundred of them."""
+    head = f"{origin}: {len(problems)} problem{'s' * (len(problems) != 1)}"
+    more = len(problems) - _MOST_LISTED
+    last = [f"  and {more} more"] if more > 0 else []
+    return "\n".join([head, *(f"  {problem}" for problem in problems[:_MOST_LISTED]), *last])
 
 
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)

@@ -22,11 +22,11 @@ Real = Any
 
 
 class Sequences(NamedTuple):
-    """Symmetrical components of three phasors, in the unit of the phasors."""
+    """Symmetrical components of three phasors, in the unit of the phasors: numbers, or arrays of one shape."""
 
-    positive: complex
-    negative: complex
-    zero: complex
+    positive: Complex
+    negative: Complex
+    zero: Complex
 
 
 def clarke(a: Real, b: Real, c: Real) -> Complex:

@@ -8,6 +8,7 @@ from pvlvrt_compliance.errors import UsageError
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _FRACTION = re.compile(rf"({_NUMBER})\s*(%?)")
+_NOMINAL_FREQUENCIES_HZ = (50.0, 60.0)
 _DURATION = re.compile(rf"({_NUMBER})\s*(ms|s)")
 
 
@@ -28,6 +29,11 @@ class Nominal:
     apparent_power_va: float = 500e3
     phase_voltage_v: float = 230.0
     frequency_hz: float = 50.0
+
+    @property
+    def apparent_power_kva(self) -> float:
+        """S_nom (kVA); 1 pu of power."""
+        return self.apparent_power_va / 1e3
 
     @property
     def phase_voltage_peak_v(self) -> float:
@@ -88,3 +94,8 @@ def parse_duration(text: str, what: str) -> float:
     if not (value > 0 and math.isfinite(value)):
         raise UsageError(f"{what}: {text!r} must be longer than zero")
     return value
+
+
+def nearest_nominal_frequency(frequency_hz: float) -> float:
+    """Return 50 or 60 Hz, whichever is nearer: the nominal frequency of a grid that runs at ``frequency_hz``."""
+    return min(_NOMINAL_FREQUENCIES_HZ, key=lambda nominal: abs(nominal - frequency_hz))

@@ -13,7 +13,7 @@ import pvlvrt_compliance
 PACKAGE = Path(pvlvrt_compliance.__file__).parent
 NAME = pvlvrt_compliance.__name__
 
-COMMON = {"errors", "units", "space_vectors", "resources", "positions", "problems", "texts"}
+COMMON = {"errors", "units", "space_vectors", "resources", "texts"}
 KERNELS = {"kernel", "vectors", "sogi"}
 # By folder, or module at the root: what of the package it may import besides itself. "*" is everything.
 ALLOWED = {
@@ -22,8 +22,6 @@ ALLOWED = {
     "units": {"errors"},
     "space_vectors": set(),
     "resources": {"errors"},
-    "positions": set(),
-    "problems": {"errors"},
     "processes": set(),
     "locks": set(),
     "texts": set(),
@@ -33,21 +31,25 @@ ALLOWED = {
     "vectors": {"kernel", "space_vectors"},
     "sogi": {"kernel", "vectors"},
     "waveforms": COMMON,
-    "scenario": COMMON,
-    "profile": COMMON | {"scenario"},
+    "data": {"errors", "resources"},  # what every file that people write shares
+    "scenario": COMMON | {"data"},
+    "profile": COMMON | {"data", "scenario"},
     "measure": COMMON | {"waveforms"},
-    "checks": COMMON | {"profile", "scenario", "measure", "waveforms"},
+    # What the grid did is made from a scenario or from a record; its plain data is read with a result.
+    "disturbance": COMMON | {"measure", "scenario", "waveforms"},
+    "evidence": COMMON | {"disturbance", "measure", "profile", "waveforms"},
+    "results": {"errors", "texts", "measure.quantities", "disturbance.model"},
+    "checks": COMMON | {"data", "disturbance", "evidence", "measure", "profile", "results", "waveforms"},
     "control": COMMON | KERNELS,
     "plant": COMMON | KERNELS,
     "simulation": COMMON
     | KERNELS
-    | {"compiled", "processes", "locks", "controllers", "plant", "control", "scenario", "waveforms"},
+    | {"compiled", "processes", "locks", "data", "controllers", "plant", "control", "scenario", "waveforms"},
     # The kernel's digest is part of the provenance of a run.
-    "study": COMMON | {"kernel", "processes", "locks", "profile", "scenario", "simulation", "checks", "waveforms"},
-    "report": COMMON | {"checks.results", "waveforms", "profile", "measure"},
+    "study": COMMON | {"kernel", "locks", "profile", "scenario", "simulation", "checks", "results", "waveforms"},
+    "report": COMMON | {"data", "disturbance", "results", "waveforms", "profile", "measure"},
     "cli": {"*"},
     "templates": set(),  # projects of users, which stand alone
-    "__main__": {"cli"},
 }
 NUMBA = {"compiled", "kernel", "plant", "control", "simulation"}
 
@@ -109,16 +111,46 @@ def test_numba_stays_with_the_kernels(path):
         assert not {name for name in imported(path) if name.split(".")[0] == "numba"}
 
 
+def test_one_room_reads_toml():
+    """Files that people write are read by data/ alone, so that all of them are read with the same care."""
+    readers = {part_of(path) for path in modules() if "tomllib" in imported(path)}
+    assert readers == {"data"}
+
+
 def test_checks_never_see_the_simulator():
     """What is judged is a record, simulated or recorded: no check reaches simulation, plant or control."""
-    for folder in ("checks", "measure", "profile", "waveforms", "report"):
-        for path in (PACKAGE / folder).glob("*.py"):
+    for folder in ("checks", "disturbance", "evidence", "measure", "profile", "results", "waveforms", "report"):
+        for path in (PACKAGE / folder).rglob("*.py"):
             assert not {name.split(".")[0] for name in own(imported(path))} & {"simulation", "plant", "control"}, path
+
+
+def test_no_check_sees_a_scenario():
+    """What the grid did reaches checks as a disturbance, made from a scenario or found in a record."""
+    for path in (PACKAGE / "checks").rglob("*.py"):
+        assert not {name.split(".")[0] for name in own(imported(path))} & {"scenario", "simulation"}, path
+        names = {node.id for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Name)}
+        assert "Scenario" not in names, path
+
+
+def test_reading_results_stays_light():
+    """Whoever reads a result of a run needs neither numpy nor a simulator."""
+    code = f"import sys, {NAME}.results; print(*sorted(m.split('.')[0] for m in sys.modules))"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {"numpy", "numba", "scipy", "plotly"} & set(run.stdout.split())
+
+
+@pytest.mark.parametrize("part", sorted(ALLOWED))
+def test_the_table_allows_nothing_that_nobody_needs(part):
+    """A part that stops using another gives up the right to, so that the table says how the rooms lie."""
+    used = {name for path in modules() if part_of(path) == part for name in own(imported(path))}
+    heads = {".".join(name.split(".")[:depth]) for name in used for depth in (1, 2)}
+    everyone_may = COMMON | (KERNELS if part in NUMBA else set()) | {"*"}
+    assert not ALLOWED[part] - everyone_may - heads
 
 
 def test_the_table_has_no_entry_for_what_is_gone():
     """Each name of the table is a part of the package."""
-    parts = {part_of(path) for path in modules()} | {"__main__"}
+    parts = {part_of(path) for path in modules()}
     assert set(ALLOWED) <= parts
 
 

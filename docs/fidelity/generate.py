@@ -12,7 +12,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from pvlvrt_compliance.measure.quantities import Measurements
+from pvlvrt_compliance.measure.quantities import MeasuredWindows
 from pvlvrt_compliance.measure.summary import measure
 from pvlvrt_compliance.measure.windows import standard_windows
 from pvlvrt_compliance.plant.carrier import pulses_of
@@ -42,7 +42,7 @@ FINE = 128  # instants in a carrier period at which the figure shows the ripple
 
 
 @cache
-def run(scenario: Scenario, settings: tuple[str, ...]) -> tuple[Segment, Measurements]:
+def run(scenario: Scenario, settings: tuple[str, ...]) -> tuple[Segment, MeasuredWindows]:
     """Record of a run, and its measurements."""
     parameters = parameters_from(settings)
     waveforms = simulate(scenario, parameters)

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from pvlvrt_compliance.cli.main import run
+from pvlvrt_compliance.data.search_path import SHIPPED, known_profiles
 from pvlvrt_compliance.profile.loading import load_profile
-from pvlvrt_compliance.profile.search_path import SHIPPED, known_profiles
 
 HERE = Path(__file__).parent
 PAGE = HERE.parent / "grid-codes.md"

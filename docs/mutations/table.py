@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from mutants import MUTANTS, RIGHT, UNNOTICED, Mutant
-from pvlvrt_compliance.checks.results import Check, Status
 from pvlvrt_compliance.profile import Profile, load_profile
+from pvlvrt_compliance.results import Status, Verdict
 from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.study.rows import run_rows
@@ -44,7 +44,7 @@ def simulator(wrong: Wrong | None) -> Callable[..., Any]:
     return simulate if wrong is None else partial(simulate, run=wrong_run(wrong))
 
 
-def checks_of(mutant: Mutant) -> Iterator[Check]:
+def checks_of(mutant: Mutant) -> Iterator[Verdict]:
     """Every verdict on a mutant."""
     profile, parameters = table_profile(), parameters_from(mutant.settings)
     judge = partial(run_test, profile, parameters=parameters, simulator=simulator(mutant.wrong))

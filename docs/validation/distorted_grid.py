@@ -11,14 +11,14 @@ from findings import Finding, samples_of, settled, shell
 from pvlvrt_compliance.measure.fourier import turning, whole_cycles
 from pvlvrt_compliance.measure.harmonics import thd_percent
 from pvlvrt_compliance.scenario.files import load_events
-from pvlvrt_compliance.scenario.parameters import Synchronisation
+from pvlvrt_compliance.scenario.parameters import SynchronisationName
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.waveforms import Segment
 from records import NOMINAL, vector
 from sequence_filters import Harmonics, frequency_ripple_hz, positive_ripple, reference_thd_percent
 
-NAMES: tuple[str, ...] = get_args(Synchronisation)
+NAMES: tuple[str, ...] = get_args(SynchronisationName)
 ANTIPHASE, IN_PHASE = "harmonics.toml", "harmonics-in-phase.toml"
 """Files of events beside this one."""
 WEAK_SCR = 20.0

@@ -313,7 +313,7 @@ def section() -> Section:
 
 _TEXT = """Random scenarios: residual voltages from 0 to 1.1 pu and half a radian off their angles, 20 to 400 ms,
 any point on wave, 47 to 63 Hz, 0 to 1200 W/m2, -20 to 80 degrees C, stiff or SCR 3 to 50, no relay acting.
-`tests/evidence/` lets hypothesis draw another 500.
+`tests/validation/` lets hypothesis draw another 500.
 
 - Energy: what the array gives is stored in the link and the inductances, lost in the resistances, or taken by the
   source, over any window of at least a cycle, summed from the recorded samples. Two things are known of the record

@@ -14,7 +14,7 @@ _HEAD = """# Validation
 
 Figures found beside figures that another program, a closed form or the paper gives. This page is written by `python
 docs/validation/generate.py`; `--check` computes everything anew and fails when a printed figure is another one, by
-more than one unit of its last digit. `tests/evidence/` asserts the same figures. It needs the extra `dev` and
+more than one unit of its last digit. `tests/validation/` asserts the same figures. It needs the extra `dev` and
 ngspice. The inverter is the averaged one unless a section says otherwise."""
 
 

@@ -1,1 +1,1 @@
-"""Checks: a requirement of a profile meets measurements and gives a verdict. Nothing here knows the simulator."""
+"""Checks: a requirement of a profile meets evidence and gives a verdict. Nothing here knows simulator or scenario."""

@@ -2,31 +2,34 @@
 
 from collections.abc import Iterable
 
-from pvlvrt_compliance.checks.evidence import Evidence, NotApplicable
-from pvlvrt_compliance.checks.judging import in_words, judge_safely
-from pvlvrt_compliance.checks.registry import Judge, find_judge
-from pvlvrt_compliance.checks.results import Check, ProfileSummary, Status, TestResult, worst
+from pvlvrt_compliance.checks.check import Check, RowCheck
+from pvlvrt_compliance.checks.judging import in_words, judge_safely, limits_safely
+from pvlvrt_compliance.checks.registry import find_check
 from pvlvrt_compliance.checks.validity import reason_not_to_count
 from pvlvrt_compliance.checks.verdicts import unjudged
+from pvlvrt_compliance.disturbance.model import Disturbance
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.measure.quantities import Measurements
-from pvlvrt_compliance.measure.summary import measure
-from pvlvrt_compliance.measure.windows import STANDARD_RULES, WindowRules
+from pvlvrt_compliance.evidence.collect import collect, disturbance_of
+from pvlvrt_compliance.evidence.evidence import Evidence
+from pvlvrt_compliance.measure.quantities import MeasuredWindows
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.requirements import Requirement
+from pvlvrt_compliance.results import Band, ProfileSummary, Status, TestResult, Verdict, worst
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Waveforms
 
-CONNECTION_KINDS = ("ride_through", "frequency_ride_through", "phase_jump_ride_through")
-"""Kinds that judge whether the inverter may stop; all others have nothing to say of one that did."""
-
-REPEATED_RUNS = "repeated_runs"
-"""Kind that judges all runs of a row together, not one record."""
+_JUDGED = (Status.PASS, Status.FAIL)
+_OF_ONE_SAG = 2  # stretches: the sag, and what follows it
 
 
 def evaluate(
-    profile: Profile, test: TestCase, waveforms: Waveforms, nominal: Nominal, available_power_w: float
+    profile: Profile,
+    test: TestCase,
+    waveforms: Waveforms,
+    nominal: Nominal,
+    available_power_w: float,
+    disturbance: Disturbance | None = None,
 ) -> TestResult:
     """Judge one record by every requirement of a profile.
 
@@ -35,28 +38,48 @@ def evaluate(
     profile : Profile
         What is demanded.
     test : TestCase
-        What was applied; its scenario's times count from the start of the record.
+        What was applied.
     waveforms : Waveforms
         The record, simulated or measured.
     nominal : Nominal
         Base of the per-unit values.
     available_power_w : float
-        What the PV array could give before the sag (W).
+        What the PV array could give before the disturbance (W).
+    disturbance : Disturbance, optional
+        What the grid did; by default what the test's scenario asks of it.
 
     Returns
     -------
     TestResult
         A verdict on each requirement; what cannot be measured is `not_evaluated` with the reason, nothing is raised.
     """
-    evidence = collect(profile, test, waveforms, nominal, available_power_w)
-    checks = _judge_all(profile, test, evidence)
-    return _result(profile, test, checks, evidence.measurements, waveforms.end_s - waveforms.t0_s)
+    evidence = collect(profile, test, waveforms, nominal, available_power_w, disturbance)
+    verdicts, bands = _judge_all(profile, test, evidence)
+    result = _result(profile, test, verdicts, evidence.disturbance)
+    found = {
+        "bands": bands,
+        "measurements": _measurements(evidence),
+        "duration_s": waveforms.end_s - waveforms.t0_s,
+        "trip_cause": evidence.trip_cause,
+    }
+    return result.model_copy(update=found)
+
+
+def _measurements(evidence: Evidence) -> MeasuredWindows:
+    """The windows of the (first) sag, and where the voltage has further steps those of each stretch."""
+    if len(evidence.voltage_stretches) <= _OF_ONE_SAG:
+        return evidence.measurements
+    try:
+        stretches = evidence.measured_stretches
+    except MeasurementError:  # no frequency to count cycles of
+        return evidence.measurements
+    return evidence.measurements.model_copy(update={"stretches": stretches})
 
 
 def errored(profile: Profile, test: TestCase, reason: str) -> TestResult:
     """Result of a test that gave no waveforms to judge: every requirement is an `error` with the reason."""
-    checks = [unjudged(kind, requirement, Status.ERROR, reason) for kind, requirement in demands_of(profile, test)]
-    return _result(profile, test, checks, Measurements(), 0.0)
+    verdicts = [unjudged(kind, requirement, Status.ERROR, reason) for kind, requirement in demands_of(profile, test)]
+    return _result(profile, test, verdicts, disturbance_of(profile, test))
 
 
 def summarise(profile: Profile, tests: Iterable[TestCase], left_out: Iterable[TestCase] = ()) -> ProfileSummary:
@@ -70,96 +93,76 @@ def summarise(profile: Profile, tests: Iterable[TestCase], left_out: Iterable[Te
     )
 
 
-def collect(
-    profile: Profile, test: TestCase, waveforms: Waveforms, nominal: Nominal, available_power_w: float
-) -> Evidence:
-    """Measure a record and put it together with what is known about its test; parameters as `evaluate`."""
-    rules = window_rules(profile)
-    scenario = test.scenario
-    return Evidence(
-        waveforms=waveforms,
-        nominal=nominal,
-        scenario=scenario,
-        available_power_w=available_power_w,
-        measurements=measure(waveforms, nominal, scenario.start_s, scenario.clear_s, rules),
-        rules=rules,
-        blocked_below_pu=profile.conditions.blocked_below_pu.value,
-        k_factor=test.k_factor,
-        detection=profile.detection,
-        requirements=profile.requirements,
-    )
-
-
-def window_rules(profile: Profile) -> WindowRules:
-    """The profile's measurement windows, or the standard ones."""
-    if profile.windows is None:
-        return STANDARD_RULES
-    return WindowRules(**{name: number.value for name, number in profile.windows})
-
-
 def demands_of(profile: Profile, test: TestCase) -> list[tuple[str, Requirement]]:
     """Each requirement that a record of this test is judged by, with its kind."""
-    of_a_record = ((kind, demand) for kind, demand in profile.requirements.by_kind() if kind != REPEATED_RUNS)
-    return [(kind, demand) for kind, demand in of_a_record if test.judges(kind)]
+    return [
+        (kind, demand) for kind, demand in profile.requirements.by_kind() if test.judges(kind) and not _of_rows(kind)
+    ]
 
 
-def _judge_all(profile: Profile, test: TestCase, evidence: Evidence) -> list[Check]:
+def _of_rows(kind: str) -> bool:
+    try:
+        return isinstance(find_check(kind), RowCheck)
+    except Exception:  # a check that cannot be loaded is told where its record is judged
+        return False
+
+
+def _judge_all(profile: Profile, test: TestCase, evidence: Evidence) -> tuple[list[Verdict], tuple[Band, ...]]:
     demands = demands_of(profile, test)
     try:
         reason = reason_not_to_count(profile.conditions, evidence)
     except MeasurementError as error:
         reason = str(error)
     if reason is not None:
-        return [unjudged(kind, requirement, Status.NOT_EVALUATED, reason) for kind, requirement in demands]
-    return [_judge(kind, requirement, evidence) for kind, requirement in demands]
+        return [unjudged(kind, demand, Status.NOT_EVALUATED, reason) for kind, demand in demands], ()
+    judged = [_judge(kind, requirement, evidence) for kind, requirement in demands]
+    return [verdict for verdict, _ in judged], tuple(band for _, bands in judged for band in bands)
 
 
-def _judge(kind: str, requirement: Requirement, evidence: Evidence) -> Check:
+def _judge(kind: str, requirement: Requirement, evidence: Evidence) -> tuple[Verdict, tuple[Band, ...]]:
+    """The verdict, and what a figure draws beside it."""
     try:
-        judge = find_judge(kind)
+        check = find_check(kind)
     except Exception as error:
-        return unjudged(kind, requirement, Status.ERROR, f"the check could not be loaded: {in_words(error)}")
-    if judge is None:
+        return unjudged(kind, requirement, Status.ERROR, f"the check could not be loaded: {in_words(error)}"), ()
+    if check is None:
         reason = f"no installed package has a check for the requirement {kind!r}"
-        return unjudged(kind, requirement, Status.NOT_EVALUATED, reason)
-    return judge_safely(kind, _unless_stopped(kind, judge), requirement, evidence)
+        return unjudged(kind, requirement, Status.NOT_EVALUATED, reason), ()
+    if not check.judges_connection:
+        try:
+            stop = _stop(evidence)
+        except MeasurementError as error:
+            return unjudged(kind, requirement, Status.NOT_EVALUATED, str(error)), ()
+        if stop is not None:
+            return unjudged(kind, requirement, Status.NOT_APPLICABLE, stop), ()
+    return _with_limits(check, requirement, evidence)
 
 
-def _unless_stopped(kind: str, judge: Judge) -> Judge:
-    """The judge, but for the verdict on an inverter that stopped for good: that is of the connection alone."""
-    if kind in CONNECTION_KINDS:
-        return judge
-
-    def judge_what_runs(requirement: Requirement, evidence: Evidence) -> Check:
-        if (stop := _stop(evidence)) is not None:
-            raise NotApplicable(stop)
-        return judge(requirement, evidence)
-
-    return judge_what_runs
+def _with_limits(check: Check, requirement: Requirement, evidence: Evidence) -> tuple[Verdict, tuple[Band, ...]]:
+    verdict = judge_safely(check, requirement, evidence)
+    return verdict, limits_safely(check, requirement, evidence) if verdict.status in _JUDGED else ()
 
 
 def _stop(evidence: Evidence) -> str | None:
-    """How the inverter stopped feeding for good, None when it did not; what stopped is judged by ride-through alone."""
-    start_s = evidence.scenario.start_s
-    if evidence.is_switched and evidence.disconnected_at_s is not None:
-        return f"tripped {evidence.disconnected_at_s - start_s:.3f} s after the start"
+    """How the inverter stopped feeding for good, None when it did not: then the connection alone is judged."""
+    start_s = evidence.disturbance.start_s
+    if (opened_s := evidence.known_opening_s) is not None:
+        cause = f" by the {evidence.trip_cause}" if evidence.trip_cause else ""
+        return f"tripped {opened_s - start_s:.3f} s after the start{cause}"
     if evidence.blocked_at_s is not None:
         return f"bridge blocked {evidence.blocked_at_s - start_s:.3f} s after the start"
     return None
 
 
-def _result(
-    profile: Profile, test: TestCase, checks: list[Check], measurements: Measurements, duration_s: float
-) -> TestResult:
+def _result(profile: Profile, test: TestCase, verdicts: list[Verdict], disturbance: Disturbance) -> TestResult:
     return TestResult(
         id=test.id,
         profile=profile.id,
         title=test.title,
         scenario=test.scenario.model_dump(mode="json"),
-        status=worst(check.status for check in checks),
-        checks=tuple(checks),
-        measurements=measurements,
+        disturbance=disturbance,
+        status=worst(verdict.status for verdict in verdicts),
+        checks=tuple(verdicts),
         clause=test.clause,
         confidence=test.confidence,
-        duration_s=duration_s,
     )

@@ -1,30 +1,39 @@
-"""One judge, called so that a verdict comes out of it whatever happens inside."""
+"""One check, called so that a verdict comes out of it whatever happens inside."""
 
-from pvlvrt_compliance.checks.evidence import Evidence, NotApplicable
-from pvlvrt_compliance.checks.registry import Judge
-from pvlvrt_compliance.checks.results import Check, Status
+from pvlvrt_compliance.checks.check import Check
 from pvlvrt_compliance.checks.verdicts import unjudged
 from pvlvrt_compliance.errors import MeasurementError
+from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
 from pvlvrt_compliance.profile.requirements import Requirement
+from pvlvrt_compliance.results import Band, Status, Verdict
 
 
-def judge_safely(kind: str, judge: Judge, requirement: Requirement, evidence: Evidence) -> Check:
-    """Return the verdict of a judge.
+def judge_safely(check: Check, requirement: Requirement, evidence: Evidence) -> Verdict:
+    """Return the verdict of a check on a record.
 
-    `NotApplicable` and `MeasurementError` become the verdicts that they stand for. Anything else that a judge raises,
-    or a return value that is no `Check`, is an `error` with the text: one faulty check must not end a run.
+    `NotApplicable` and `MeasurementError` become the verdicts that they stand for. Anything else that a check raises,
+    or a return value that is no `Verdict`, is an `error` with the text: one faulty check must not end a run.
     """
     try:
-        check = judge(requirement, evidence)
+        verdict = check.judge(requirement, evidence)
     except NotApplicable as reason:
-        return unjudged(kind, requirement, Status.NOT_APPLICABLE, str(reason))
+        return unjudged(check.kind, requirement, Status.NOT_APPLICABLE, str(reason))
     except MeasurementError as error:
-        return unjudged(kind, requirement, Status.NOT_EVALUATED, str(error))
-    except Exception as error:  # a judge of another package may raise what it likes
-        return unjudged(kind, requirement, Status.ERROR, f"the check raised {in_words(error)}")
-    if not isinstance(check, Check):
-        return unjudged(kind, requirement, Status.ERROR, f"the check returned a {type(check).__name__}, not a Check")
-    return check
+        return unjudged(check.kind, requirement, Status.NOT_EVALUATED, str(error))
+    except Exception as error:  # a check of another package may raise what it likes
+        return unjudged(check.kind, requirement, Status.ERROR, f"the check raised {in_words(error)}")
+    if not isinstance(verdict, Verdict):
+        text = f"the check returned a {type(verdict).__name__}, not a Verdict"
+        return unjudged(check.kind, requirement, Status.ERROR, text)
+    return verdict
+
+
+def limits_safely(check: Check, requirement: Requirement, evidence: Evidence) -> tuple[Band, ...]:
+    """What a figure draws of a requirement; nothing where the check cannot say."""
+    try:
+        return tuple(check.limits(requirement, evidence))
+    except Exception:  # a figure without a band is no reason to lose the verdict
+        return ()
 
 
 def in_words(error: Exception) -> str:

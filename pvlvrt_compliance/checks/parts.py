@@ -1,17 +1,17 @@
 """Requirements of several limits: each is a part, and the part nearest to failing is reported."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from pvlvrt_compliance.checks.evidence import NotApplicable
-from pvlvrt_compliance.checks.results import Check
 from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
-from pvlvrt_compliance.profile.provenance import Marked
+from pvlvrt_compliance.data.marks import Marked
+from pvlvrt_compliance.evidence.evidence import NotApplicable
 from pvlvrt_compliance.profile.requirements import Requirement
+from pvlvrt_compliance.results import Verdict
 
 # In the unit of the limit: far finer than any sensor, far coarser than what rounding adds up to.
-_DECIMALS = 9
+_NOISE = 0.5e-9
 
 
 class Part(NamedTuple):
@@ -27,7 +27,8 @@ class Part(NamedTuple):
     @property
     def margin(self) -> float:
         """Distance to failing, negative when failed; without the rounding noise that decides where both are zero."""
-        return round(self.limit - self.measured, _DECIMALS) + 0.0  # adding zero makes of -0.0 a plain 0.0
+        margin = self.limit - self.measured
+        return margin if abs(margin) >= _NOISE else 0.0
 
     @property
     def passed(self) -> bool:
@@ -42,8 +43,24 @@ class Part(NamedTuple):
         return math.inf if self.passed else -math.inf
 
 
-def judged_by_parts(kind: str, requirement: Requirement, parts: Sequence[Part]) -> Check:
-    """Verdict on the part with the least margin relative to its limit; one that fails comes before all that pass.
+def by_relative_margin(part: Part) -> float:
+    """Order of parts of different units."""
+    return part.relative_margin
+
+
+def by_margin(part: Part) -> float:
+    """Order of parts of one unit."""
+    return part.margin
+
+
+def judged_by_parts(
+    kind: str,
+    requirement: Requirement,
+    parts: Sequence[Part],
+    *,
+    nearest: Callable[[Part], float] = by_relative_margin,
+) -> Verdict:
+    """Verdict on the part with the least margin, by default relative to its limit; one that fails comes first.
 
     Raises
     ------
@@ -52,7 +69,7 @@ def judged_by_parts(kind: str, requirement: Requirement, parts: Sequence[Part]) 
     """
     if not parts:
         raise NotApplicable("the profile states no limit for this test")
-    worst = min(parts, key=lambda part: (part.passed, part.relative_margin))
+    worst = min(parts, key=lambda part: (part.passed, nearest(part)))
     side = "within" if worst.passed else "beyond"
     return judged(
         kind,

@@ -2,14 +2,15 @@
 
 from collections.abc import Iterable
 
-import numpy as np
-
-from pvlvrt_compliance.checks.evidence import Evidence, require_finite
-from pvlvrt_compliance.checks.results import Check
-from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
+from pvlvrt_compliance.checks.verdicts import judged_at_most
+from pvlvrt_compliance.data.marks import Marked, Number
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.profile.provenance import Marked, Number
+from pvlvrt_compliance.evidence.evidence import Evidence, require_finite
+from pvlvrt_compliance.evidence.series import Mask
+from pvlvrt_compliance.measure.response import settled_from
 from pvlvrt_compliance.profile.requirements import Requirement
+from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.waveforms.container import Samples
 
 
 def recovered_after_s(evidence: Evidence, from_s: float, target_kw: float) -> float | None:
@@ -39,10 +40,22 @@ def recovered_after_s(evidence: Evidence, from_s: float, target_kw: float) -> fl
     if not len(t_s):
         raise MeasurementError(f"the record ends at {evidence.waveforms.end_s:.3f} s, before {from_s:.3f} s")
     active_power = require_finite(evidence.active_power_kw[after], "P", t_s)
-    too_low = np.flatnonzero(active_power < target_kw)
-    if not len(too_low):
-        return 0.0
-    return float(t_s[too_low[-1] + 1] - from_s) if too_low[-1] + 1 < len(t_s) else None
+    return settled_after_s(t_s, active_power < target_kw, from_s)
+
+
+def settled_after_s(t_s: Samples, outside: Mask, from_s: float) -> float | None:
+    """Time from an instant until nothing lies outside any more (s): 0 where nothing does, None where it never ends.
+
+    Parameters
+    ----------
+    t_s : array, shape (n,)
+        Instants of the samples from that instant on (s).
+    outside : array of bool, shape (n,)
+    """
+    first = settled_from(outside)
+    if not first:
+        return None if first is None else 0.0
+    return float(t_s[first] - from_s)
 
 
 def judge_recovery(
@@ -55,7 +68,7 @@ def judge_recovery(
     time_s: Number,
     rests_on: Iterable[Marked],
     since: str,
-) -> Check:
+) -> Verdict:
     """Verdict on the time that an inverter which stayed connected takes to be back at a share of its power.
 
     Parameters
@@ -63,7 +76,7 @@ def judge_recovery(
     from_s : float
         The instant that the time counts from (s, from the start of the record); ``since`` names it.
     fraction, time_s : Number
-        The share of P before the sag, and the time allowed.
+        The share of P before the disturbance, and the time allowed.
 
     Raises
     ------
@@ -78,14 +91,12 @@ def judge_recovery(
         raise MeasurementError(f"the record ends {observed_s:.3f} s after {since}, before P is back at {target}")
     recovered_s = observed_s if back_s is None else back_s
     came = f"P was {'not ' if back_s is None else ''}back at {target}"
-    return judged(
+    return judged_at_most(
         kind,
         requirement,
-        pass_or_fail(recovered_s <= allowed_s),
         f"connected throughout; {came} {recovered_s:.3f} s after {since}",
         measured=recovered_s,
         limit=allowed_s,
-        margin=allowed_s - recovered_s,
         unit="s",
         at_s=from_s + recovered_s,
         rests_on=rests_on,

@@ -1,11 +1,7 @@
-"""When a test counts at all: it began as it was meant to, and the sag was the one asked for."""
+"""When a test counts at all: it began as it was meant to, and the grid did what was asked of it."""
 
-from pvlvrt_compliance.checks.disturbances import voltage_steps_s
-from pvlvrt_compliance.checks.evidence import Evidence
+from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.profile.procedure import Conditions
-
-_LAST_STEP_S = 0.01
-"""A record ends up to a sampling step before the end that was asked for."""
 
 
 def reason_not_to_count(conditions: Conditions, evidence: Evidence) -> str | None:
@@ -25,10 +21,11 @@ def reason_not_to_count(conditions: Conditions, evidence: Evidence) -> str | Non
 
 
 def _record_too_short(evidence: Evidence) -> str | None:
-    scenario, end_s = evidence.scenario, evidence.waveforms.end_s
-    if end_s <= scenario.clear_s:
-        return f"the record ends at {end_s:.3f} s, before the sag is cleared at {scenario.clear_s:.3f} s"
-    missed = [t for t in voltage_steps_s(scenario) if end_s < t < scenario.end_s - _LAST_STEP_S]
+    grid, end_s = evidence.disturbance, evidence.waveforms.end_s
+    if end_s <= grid.clear_s:
+        return f"the record ends at {end_s:.3f} s, before the sag is cleared at {grid.clear_s:.3f} s"
+    asked_end_s = end_s if grid.record_end_s is None else grid.record_end_s
+    missed = [t for t in grid.voltage_steps_s if end_s < t < asked_end_s - evidence.thresholds.record_slack_s.value]
     return f"the record ends at {end_s:.3f} s, before the voltage's step at {missed[0]:.3f} s" if missed else None
 
 
@@ -42,8 +39,8 @@ def _wrong_start(conditions: Conditions, evidence: Evidence) -> str | None:
 
 
 def _disconnected_before(evidence: Evidence) -> str | None:
-    opened_s = evidence.disconnected_at_s if evidence.is_switched else None
-    if opened_s is None or opened_s >= evidence.scenario.start_s:
+    opened_s = evidence.known_opening_s
+    if opened_s is None or opened_s >= evidence.disturbance.start_s:
         return None
     return f"the breaker opened at {opened_s:.3f} s, before the sag began"
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable
 
-from pvlvrt_compliance.checks.results import Check, Status
-from pvlvrt_compliance.profile.provenance import Marked, weakest
+from pvlvrt_compliance.data.marks import Marked, weakest
 from pvlvrt_compliance.profile.requirements import Requirement
+from pvlvrt_compliance.results import Status, Verdict
 
 
 def judged(
@@ -20,7 +20,7 @@ def judged(
     at_s: float,
     rests_on: Iterable[Marked],
     clause: str = "",
-) -> Check:
+) -> Verdict:
     """Verdict on a measured value.
 
     Parameters
@@ -36,7 +36,7 @@ def judged(
     rests_on : iterable of Marked
         The numbers that decided; the weakest of their marks is the verdict's.
     """
-    return Check(
+    return Verdict(
         check=kind,
         status=status,
         measured=float(measured),
@@ -50,9 +50,37 @@ def judged(
     )
 
 
-def unjudged(kind: str, requirement: Requirement, status: Status, reason: str) -> Check:
+def judged_at_most(
+    kind: str,
+    requirement: Requirement,
+    message: str,
+    *,
+    measured: float,
+    limit: float,
+    unit: str,
+    at_s: float,
+    rests_on: Iterable[Marked],
+    clause: str = "",
+) -> Verdict:
+    """Verdict on a measured value that may be a limit at most; parameters as `judged`."""
+    return judged(
+        kind,
+        requirement,
+        pass_or_fail(measured <= limit),
+        message,
+        measured=measured,
+        limit=limit,
+        margin=limit - measured,
+        unit=unit,
+        at_s=at_s,
+        rests_on=rests_on,
+        clause=clause,
+    )
+
+
+def unjudged(kind: str, requirement: Requirement, status: Status, reason: str) -> Verdict:
     """Verdict without a measured value: not applicable, not evaluated, or an error."""
-    return Check(
+    return Verdict(
         check=kind, status=status, clause=requirement.clause, confidence=requirement.confidence, message=reason
     )
 

@@ -11,17 +11,17 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn
 
 from pvlvrt_compliance.checks.evaluate import summarise
-from pvlvrt_compliance.checks.results import EXIT_STATUS, Results, TestResult, conclude
 from pvlvrt_compliance.cli.request import KEEP_ALL, KEEP_FAILED, Job, Request
 from pvlvrt_compliance.cli.telling import tell
+from pvlvrt_compliance.data.marks import CHOSEN
 from pvlvrt_compliance.errors import OutputError
 from pvlvrt_compliance.processes import STOPS, status_of, words_of
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
-from pvlvrt_compliance.profile.provenance import CHOSEN
 from pvlvrt_compliance.report import console, html, junit, results_json
 from pvlvrt_compliance.report.decimation import buckets_for
 from pvlvrt_compliance.report.figure import test_figure
+from pvlvrt_compliance.results import EXIT_STATUS, Results, TestResult, conclude
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.study.provenance import created_at, provenance
 from pvlvrt_compliance.study.selection import Assignment
@@ -191,13 +191,10 @@ class _Run:
         return f"{count}, {said}"
 
     def _keep(self, result: TestResult, waveforms: Waveforms, item: Assignment, nominal: Nominal) -> TestResult:
-        profile = item.profile
-        envelope = profile.envelope
-        points = envelope.points if envelope and envelope.voltage_quantity == "positive_sequence" else None
         buckets = buckets_for(len(self.job.tests))
         if self._wants_waveforms(result):
             result = result.model_copy(update={"waveforms": self._file_of(waveforms, result, item, nominal)})
-        self.figures[result.key] = test_figure(waveforms, result, nominal, points, _limits(profile), buckets)
+        self.figures[result.key] = test_figure(waveforms, result, nominal, buckets)
         return result
 
     def _wants_waveforms(self, result: TestResult) -> bool:
@@ -233,13 +230,6 @@ class _Run:
 
 def _of(profile: Profile, items: Iterable[Assignment]) -> list[TestCase]:
     return [item.test for item in items if item.profile is profile]
-
-
-def _limits(profile: Profile) -> dict[str, float]:
-    limit = profile.requirements.current_limit
-    if limit is None:
-        return {}
-    return {"current_fundamental_pu": limit.allowed_pu, "current_peak_pu": limit.peak_pu.value}
 
 
 @contextmanager

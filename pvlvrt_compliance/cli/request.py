@@ -6,10 +6,11 @@ from typing import Any, NamedTuple, get_args
 
 from pydantic import ValidationError
 
+from pvlvrt_compliance.checks.registry import INSTALLED_KINDS
+from pvlvrt_compliance.data.search_path import known_profiles
 from pvlvrt_compliance.errors import UsageError, did_you_mean
 from pvlvrt_compliance.profile.loading import load_profile
 from pvlvrt_compliance.profile.profile import Profile
-from pvlvrt_compliance.profile.search_path import known_profiles
 from pvlvrt_compliance.scenario.files import load_events
 from pvlvrt_compliance.scenario.parameters import Parameters, own_parameters, parameters_from
 from pvlvrt_compliance.scenario.sag import PAIRS, Sag, Type
@@ -31,7 +32,8 @@ _OPTIONS = {
 ALL = "all"
 """In place of a name: every profile that ships or is found."""
 
-KEEP_ALL, KEEP_FAILED, KEEP_NONE = WAVEFORMS_KEPT = ("all", "failed", "none")
+KEEP_ALL, KEEP_FAILED = "all", "failed"
+WAVEFORMS_KEPT = (KEEP_ALL, KEEP_FAILED, "none")
 
 _PHASES = ("abc", "a", "b", "c", *PAIRS)
 _TYPES = get_args(Type)
@@ -111,7 +113,7 @@ def _profiles(names: Sequence[str]) -> tuple[Profile, ...]:
     if not any(names):
         raise UsageError(f"--profile is missing; known profiles: {', '.join(known)} (--help has an example)")
     wanted = [name for given in names for name in (known if given == ALL else (given,))]
-    profiles = [load_profile(name) for name in dict.fromkeys(wanted)]
+    profiles = [load_profile(name, INSTALLED_KINDS) for name in dict.fromkeys(wanted)]
     for profile in profiles:
         if [other.id for other in profiles].count(profile.id) > 1:
             raise UsageError(f"--profile: two profiles have the id {profile.id!r}; a report could not tell them apart")

@@ -27,7 +27,6 @@ class VoltageEvent(NamedTuple):
     start_s: float
     end_s: float | None
     kind: Kind
-    extreme_pu: float  # lowest low voltage, of a swell the highest high voltage
 
 
 def detect_events(
@@ -69,8 +68,7 @@ def _sags(t_s: Samples, u_low: Samples, u_high: Samples, thresholds: EventThresh
     found = []
     for first, end in _stretches(u_low < enter, u_low > leave):
         dead = limit is not None and bool((u_high[first:end] < limit).any())
-        extreme = float(np.nanmin(u_low[first:end]))
-        found.append(_event(t_s, first, end, "interruption" if dead else "sag", extreme))
+        found.append(_event(t_s, first, end, "interruption" if dead else "sag"))
     return found
 
 
@@ -81,14 +79,11 @@ def _swells(t_s: Samples, u_high: Samples, thresholds: EventThresholds) -> list[
     leave = enter if leave is None else leave
     if leave > enter:
         raise MeasurementError(f"a swell above {enter:g} pu cannot end below {leave:g} pu: that is higher")
-    return [
-        _event(t_s, first, end, "swell", float(np.nanmax(u_high[first:end])))
-        for first, end in _stretches(u_high > enter, u_high < leave)
-    ]
+    return [_event(t_s, first, end, "swell") for first, end in _stretches(u_high > enter, u_high < leave)]
 
 
-def _event(t_s: Samples, first: int, end: int, kind: Kind, extreme: float) -> VoltageEvent:
-    return VoltageEvent(float(t_s[first]), float(t_s[end]) if end < len(t_s) else None, kind, extreme)
+def _event(t_s: Samples, first: int, end: int, kind: Kind) -> VoltageEvent:
+    return VoltageEvent(float(t_s[first]), float(t_s[end]) if end < len(t_s) else None, kind)
 
 
 def _stretches(enter: NDArray[np.bool_], leave: NDArray[np.bool_]) -> list[tuple[int, int]]:

@@ -19,6 +19,9 @@ ComplexSamples = NDArray[np.complex128]
 Frequency = float | Samples
 """A frequency (Hz): one for all samples, or one at each sample, shape (n,), finite."""
 
+AMPLITUDE_FLOOR = 1.0
+"""Amplitude of a phasor (V or A, peak) below which it has no angle to speak of, where no other floor is given."""
+
 # A cycle that misses a whole number of samples by less than this, in samples, is taken to be whole.
 _ROUND_OFF = 1e-9
 

@@ -5,12 +5,9 @@ import math
 import numpy as np
 
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_phasor
+from pvlvrt_compliance.measure.fourier import AMPLITUDE_FLOOR, ComplexSamples, one_cycle_phasor
 from pvlvrt_compliance.space_vectors import SQRT2_3, clarke
 from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
-
-AMPLITUDE_FLOOR = 1.0
-"""Positive-sequence amplitude (V or A, peak) below which no frequency is measured."""
 
 _SETTLED_HZ = 1e-6
 _ITERATIONS = 20

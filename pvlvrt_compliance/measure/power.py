@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pvlvrt_compliance.measure.fourier import ComplexSamples
-from pvlvrt_compliance.measure.sequences import SequencePhasors
-from pvlvrt_compliance.space_vectors import clarke
+from pvlvrt_compliance.measure.fourier import AMPLITUDE_FLOOR, ComplexSamples
+from pvlvrt_compliance.space_vectors import Sequences, clarke
 from pvlvrt_compliance.waveforms.container import Samples, Segment
 
 
@@ -34,10 +33,6 @@ class SequencePowers(NamedTuple):
     negative: Power
 
 
-VOLTAGE_FLOOR_V = 1.0
-"""Amplitude of a sequence voltage (V, peak) below which a current has no direction to be measured along."""
-
-
 def instantaneous_power(segment: Segment) -> Power:
     """Powers that flow to the grid at each sample: p + jq = u conj(i), eqs (2) and (3) of the paper.
 
@@ -50,7 +45,7 @@ def instantaneous_power(segment: Segment) -> Power:
     return Power(p=s.real, q=s.imag)
 
 
-def sequence_current(u: ComplexSamples, i: ComplexSamples, floor: float = VOLTAGE_FLOOR_V) -> SequenceCurrent:
+def sequence_current(u: ComplexSamples, i: ComplexSamples, floor: float = AMPLITUDE_FLOOR) -> SequenceCurrent:
     """Active and reactive current of the positive sequence, I_active + j I_reactive = U+ conj(I+) / |U+|.
 
     Active current delivers power. Reactive current is positive when the current lags the voltage, eq (3) of the
@@ -74,7 +69,7 @@ def sequence_current(u: ComplexSamples, i: ComplexSamples, floor: float = VOLTAG
     return SequenceCurrent(active=along.real, reactive=along.imag)
 
 
-def negative_sequence_current(u: ComplexSamples, i: ComplexSamples, floor: float = VOLTAGE_FLOOR_V) -> SequenceCurrent:
+def negative_sequence_current(u: ComplexSamples, i: ComplexSamples, floor: float = AMPLITUDE_FLOOR) -> SequenceCurrent:
     """Active and reactive current of the negative sequence, I_active - j I_reactive = U- conj(I-) / |U-|.
 
     The sign of the reactive current is the opposite of the positive sequence's: behind a grid of reactance X,
@@ -88,7 +83,7 @@ def negative_sequence_current(u: ComplexSamples, i: ComplexSamples, floor: float
     return SequenceCurrent(active=active, reactive=-reactive)
 
 
-def sequence_powers(u: SequencePhasors, i: SequencePhasors) -> SequencePowers:
+def sequence_powers(u: Sequences, i: Sequences) -> SequencePowers:
     """P and Q of positive and negative sequence: 3/2 |U| times its active and its reactive current.
 
     P+ + jQ+ = 3/2 U+ conj(I+), P- + jQ- = 3/2 conj(U-) I-. Sign of each as of its reactive current, so that P+ + P- and
@@ -96,7 +91,7 @@ def sequence_powers(u: SequencePhasors, i: SequencePhasors) -> SequencePowers:
 
     Parameters
     ----------
-    u, i : SequencePhasors
+    u, i : Sequences
         Voltages (V, peak) and currents (A, peak) of one reference angle.
 
     Returns

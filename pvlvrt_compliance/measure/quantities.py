@@ -2,11 +2,11 @@
 
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, FiniteFloat, SerializerFunctionWrapHandler, model_serializer
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, SerializerFunctionWrapHandler, model_serializer
 
 
 class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="ignore")
 
 
 class WindowMeasurements(_Frozen):
@@ -35,13 +35,25 @@ class ControllerBeliefs(_Frozen):
     p_ref_kw: FiniteFloat | None = None
 
 
-class Measurements(_Frozen):
+class MeasuredStretch(_Frozen):
+    """What is measured between two steps of the voltage."""
+
+    begin_s: FiniteFloat
+    end_s: FiniteFloat
+    in_words: str = ""
+    window: WindowMeasurements | None = Field(default=None, description="none: too short for a settled cycle")
+
+
+class MeasuredWindows(_Frozen):
     """Measurements of one record by window; a window that the record does not hold is left out."""
 
     before: WindowMeasurements | None = None
     during: WindowMeasurements | None = None
     after: WindowMeasurements | None = None
     controller: ControllerBeliefs | None = None
+    stretches: tuple[MeasuredStretch, ...] | None = Field(
+        default=None, description="of a record with further steps of the voltage than one sag's two"
+    )
 
     @model_serializer(mode="wrap")
     def _leave_out_absent(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:

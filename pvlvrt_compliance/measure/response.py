@@ -9,7 +9,7 @@ from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.waveforms.container import Samples
 
 
-class Band(NamedTuple):
+class Tolerance(NamedTuple):
     """Tolerance around the final value, as fractions of the change, seen in the direction of the change."""
 
     short: float  # may stay this far short of the final value
@@ -26,7 +26,9 @@ class StepResponse(NamedTuple):
     overshoot: float  # furthest beyond the final value, as a fraction of the change
 
 
-def step_response(t_s: Samples, x: Samples, event_s: float, initial: float, final: float, band: Band) -> StepResponse:
+def step_response(
+    t_s: Samples, x: Samples, event_s: float, initial: float, final: float, band: Tolerance
+) -> StepResponse:
     """Reaction, rise, response and settling time and overshoot of a step.
 
     On y = (x - initial) / (final - initial): the first instants at which y reaches 0.1 and 0.9, and the instant after
@@ -41,7 +43,7 @@ def step_response(t_s: Samples, x: Samples, event_s: float, initial: float, fina
         Instant of the event (s).
     initial, final : float
         Value before the event, and value that is asked for or reached, in the unit of x.
-    band : Band
+    band : Tolerance
         Tolerance band; a tolerance in the unit of x is divided by the change first.
 
     Raises
@@ -89,13 +91,18 @@ def first_reached(t: Samples, y: Samples, level: float) -> float | None:
 
 def last_entry(t: Samples, y: Samples, low: float, high: float) -> float | None:
     """Instant (s) from which a series stays between two levels, None when it ends outside; shapes (n,)."""
-    outside: NDArray[np.intp] = np.flatnonzero((y < low) | (y > high))
-    if not len(outside):
-        return float(t[0])
-    last = int(outside[-1])
-    if last == len(y) - 1:
-        return None
-    return _crossing(t, y, last + 1, low if y[last] < low else high)
+    first = settled_from((y < low) | (y > high))
+    if not first:
+        return None if first is None else float(t[0])
+    return _crossing(t, y, first, low if y[first - 1] < low else high)
+
+
+def settled_from(outside: NDArray[np.bool_]) -> int | None:
+    """First sample after the last that lies outside, shape (n,): 0 where none does, None where the last one does."""
+    last = np.flatnonzero(outside)
+    if not len(last):
+        return 0
+    return int(last[-1]) + 1 if last[-1] + 1 < len(outside) else None
 
 
 def _crossing(t: Samples, y: Samples, k: int, level: float) -> float:

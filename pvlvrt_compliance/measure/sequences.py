@@ -1,23 +1,13 @@
 """Sequence phasors and phase amplitudes of three-phase quantities, one-cycle."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from pvlvrt_compliance.measure.fourier import ComplexSamples, Frequency, one_cycle_phasor
-from pvlvrt_compliance.space_vectors import fortescue
+from pvlvrt_compliance.space_vectors import Sequences, fortescue
 from pvlvrt_compliance.waveforms.container import Samples, Segment
 
 
-class SequencePhasors(NamedTuple):
-    """Symmetrical components at each sample, shape (n,), peak values in the unit of the signal."""
-
-    positive: ComplexSamples
-    negative: ComplexSamples
-    zero: ComplexSamples
-
-
-def sequence_phasors(segment: Segment, kind: str, frequency_hz: Frequency) -> SequencePhasors:
+def sequence_phasors(segment: Segment, kind: str, frequency_hz: Frequency) -> Sequences:
     """Positive, negative and zero sequence of the cycle that ends at each sample (Fortescue).
 
     Parameters
@@ -31,7 +21,7 @@ def sequence_phasors(segment: Segment, kind: str, frequency_hz: Frequency) -> Se
 
     Returns
     -------
-    SequencePhasors
+    Sequences
         Phasors as `one_cycle_phasor` gives them: NaN at first, angles referenced to the segment's first sample.
 
     Raises
@@ -39,7 +29,7 @@ def sequence_phasors(segment: Segment, kind: str, frequency_hz: Frequency) -> Se
     MeasurementError
         When a channel is missing.
     """
-    return SequencePhasors(*fortescue(*_phase_phasors(segment, kind, frequency_hz)))
+    return Sequences(*fortescue(*_phase_phasors(segment, kind, frequency_hz)))
 
 
 def phase_amplitudes(segment: Segment, kind: str, frequency_hz: Frequency) -> Samples:

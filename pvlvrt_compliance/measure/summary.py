@@ -1,6 +1,7 @@
 """The standard measurements of one record, as `results.json` carries them."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from pvlvrt_compliance.measure.fourier import components, mean
 from pvlvrt_compliance.measure.frequency import frequency_before, fundamental_frequency
 from pvlvrt_compliance.measure.harmonics import distortion_percent, harmonic_amplitudes
 from pvlvrt_compliance.measure.power import instantaneous_power
-from pvlvrt_compliance.measure.quantities import ControllerBeliefs, Measurements, WindowMeasurements
+from pvlvrt_compliance.measure.quantities import ControllerBeliefs, MeasuredWindows, WindowMeasurements
 from pvlvrt_compliance.measure.ripple import ripple_amplitude, ripple_percent
 from pvlvrt_compliance.measure.windows import STANDARD_RULES, Span, WindowRules, standard_windows
 from pvlvrt_compliance.space_vectors import fortescue
@@ -17,17 +18,19 @@ from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Segment, Waveforms
 from pvlvrt_compliance.waveforms.joining import window_on_one_grid
 
-THD_FLOOR_PU = 1e-3
-"""Fundamental current (pu) below which no distortion is stated."""
 
-VOLTAGE_FLOOR_PU = 5e-3
-"""Positive-sequence voltage (pu) below which no frequency is stated."""
+class Floors(NamedTuple):
+    """From where on a window's quantities are stated; a profile may state others."""
+
+    voltage_pu: float = 5e-3  # positive-sequence voltage below which no frequency is stated
+    fundamental_pu: float = 1e-3  # fundamental current below which no distortion is stated
+    other_frequency_hz: float = 0.05  # from the frequency before: beyond it a window is measured at its own
+
+
+STANDARD_FLOORS = Floors()
 
 LONG_WINDOW_S = 3.0
 """Length from which frequency and distortion are not measured over the whole of a window (s)."""
-
-OTHER_FREQUENCY_HZ = 0.05
-"""Distance from the frequency before the sag beyond which a window is measured at its own."""
 
 LAST_PART_S = 0.2
 """What they are measured in, as long as the intervals of IEC 61000-4-7: ten cycles at 50 Hz, twelve at 60 Hz."""
@@ -36,8 +39,13 @@ Quantities = dict[str, float | tuple[float, ...] | None]
 
 
 def measure(
-    waveforms: Waveforms, nominal: Nominal, start_s: float, clear_s: float, rules: WindowRules = STANDARD_RULES
-) -> Measurements:
+    waveforms: Waveforms,
+    nominal: Nominal,
+    start_s: float,
+    clear_s: float,
+    rules: WindowRules = STANDARD_RULES,
+    floors: Floors = STANDARD_FLOORS,
+) -> MeasuredWindows:
     """Measure a record in the windows before, during and after its sag.
 
     The frequency that windows and Fourier components go by is the one measured before the sag; the nominal one where
@@ -57,19 +65,43 @@ def measure(
         Start and clearing of the sag (s).
     rules : WindowRules
         Where the windows lie.
+    floors : Floors
+        From where on quantities are stated.
     """
-    frequency_hz = _record_frequency(waveforms, nominal, start_s)
+    frequency_hz = _record_frequency(waveforms, nominal, start_s, floors)
     # The last sample stands for the step that follows it.
     end_s = waveforms.end_s + waveforms.segments[-1].dt_s
     windows = standard_windows(start_s, clear_s, end_s, frequency_hz, rules, record_start_s=waveforms.t0_s)
     peak_spans = (windows.before, Span(start_s, clear_s), Span(clear_s, end_s))
     held = {name: _held(waveforms, span) for name, span in windows._asdict().items()}
     measured = {
-        name: _measure_window(waveforms, nominal, frequency_hz, held[name], span, peak_span)
+        name: _measure_window(waveforms, nominal, frequency_hz, held[name], span, peak_span, floors)
         for name, span, peak_span in zip(windows._fields, windows, peak_spans, strict=True)
         if span is not None and peak_span is not None
     }
-    return Measurements(**measured, controller=_controller(held["during"], frequency_hz))
+    return MeasuredWindows(**measured, controller=_controller(held["during"], frequency_hz))
+
+
+def measure_span(
+    waveforms: Waveforms,
+    nominal: Nominal,
+    frequency_hz: float,
+    span: Span,
+    peak_span: Span,
+    floors: Floors = STANDARD_FLOORS,
+) -> WindowMeasurements | None:
+    """Measure a record in one window as `measure` does; None where the record does not hold it.
+
+    Parameters
+    ----------
+    frequency_hz : float
+        Frequency before the disturbance (Hz).
+    span, peak_span : Span
+        The window, and where the largest instantaneous current is looked for.
+    floors : Floors
+        From where on quantities are stated.
+    """
+    return _measure_window(waveforms, nominal, frequency_hz, _held(waveforms, span), span, peak_span, floors)
 
 
 def _held(waveforms: Waveforms, span: Span | None) -> Segment | None:
@@ -80,8 +112,8 @@ def _held(waveforms: Waveforms, span: Span | None) -> Segment | None:
         return None
 
 
-def _record_frequency(waveforms: Waveforms, nominal: Nominal, start_s: float) -> float:
-    floor = VOLTAGE_FLOOR_PU * nominal.phase_voltage_peak_v
+def _record_frequency(waveforms: Waveforms, nominal: Nominal, start_s: float, floors: Floors) -> float:
+    floor = floors.voltage_pu * nominal.phase_voltage_peak_v
     try:
         return frequency_before(waveforms, start_s, nominal.frequency_hz, floor)
     except MeasurementError:
@@ -89,14 +121,21 @@ def _record_frequency(waveforms: Waveforms, nominal: Nominal, start_s: float) ->
 
 
 def _measure_window(
-    waveforms: Waveforms, nominal: Nominal, frequency_hz: float, segment: Segment | None, span: Span, peak_span: Span
+    waveforms: Waveforms,
+    nominal: Nominal,
+    frequency_hz: float,
+    segment: Segment | None,
+    span: Span,
+    peak_span: Span,
+    floors: Floors,
 ) -> WindowMeasurements | None:
     if segment is None:
         return None
     try:
         last = _last_part(waveforms, segment, span, frequency_hz)
-        frequency_hz = _frequency_of(last, nominal, frequency_hz)
-        quantities = _voltages(segment, last, nominal, frequency_hz) | _currents(segment, last, nominal, frequency_hz)
+        frequency_hz = _frequency_of(last, nominal, frequency_hz, floors)
+        quantities = _voltages(segment, last, nominal, frequency_hz, floors)
+        quantities |= _currents(segment, last, nominal, frequency_hz, floors)
         quantities |= _powers(segment, frequency_hz) | _dc_voltage(segment, frequency_hz)
     except MeasurementError:
         return None
@@ -122,7 +161,7 @@ def _has(segment: Segment, *kinds: str) -> bool:
     return all(name in segment.channels for name in names)
 
 
-def _voltages(segment: Segment, last: Segment, nominal: Nominal, frequency_hz: float) -> Quantities:
+def _voltages(segment: Segment, last: Segment, nominal: Nominal, frequency_hz: float, floors: Floors) -> Quantities:
     if not _has(segment, "u"):
         return {}
     phasors = components(np.stack(segment.three_phase("u")), segment.dt_s, frequency_hz)
@@ -130,31 +169,31 @@ def _voltages(segment: Segment, last: Segment, nominal: Nominal, frequency_hz: f
     return {
         "voltage_positive_pu": abs(positive) / nominal.phase_voltage_peak_v,
         "voltage_negative_pu": abs(negative) / nominal.phase_voltage_peak_v,
-        "frequency_hz": _window_frequency(last, nominal, frequency_hz),
+        "frequency_hz": _window_frequency(last, nominal, frequency_hz, floors),
     }
 
 
-def _frequency_of(segment: Segment, nominal: Nominal, before_hz: float) -> float:
+def _frequency_of(segment: Segment, nominal: Nominal, before_hz: float, floors: Floors) -> float:
     """Frequency that a window is measured at: over many cycles a component at another one averages out."""
-    own_hz = _window_frequency(segment, nominal, before_hz) if _has(segment, "u") else None
-    return before_hz if own_hz is None or abs(own_hz - before_hz) <= OTHER_FREQUENCY_HZ else own_hz
+    own_hz = _window_frequency(segment, nominal, before_hz, floors) if _has(segment, "u") else None
+    return before_hz if own_hz is None or abs(own_hz - before_hz) <= floors.other_frequency_hz else own_hz
 
 
-def _window_frequency(segment: Segment, nominal: Nominal, frequency_hz: float) -> float | None:
+def _window_frequency(segment: Segment, nominal: Nominal, frequency_hz: float, floors: Floors) -> float | None:
     try:
-        return fundamental_frequency(segment, frequency_hz, floor=VOLTAGE_FLOOR_PU * nominal.phase_voltage_peak_v)
+        return fundamental_frequency(segment, frequency_hz, floor=floors.voltage_pu * nominal.phase_voltage_peak_v)
     except MeasurementError:
         return None
 
 
-def _currents(segment: Segment, last: Segment, nominal: Nominal, frequency_hz: float) -> Quantities:
+def _currents(segment: Segment, last: Segment, nominal: Nominal, frequency_hz: float, floors: Floors) -> Quantities:
     if not _has(segment, "i"):
         return {}
     amplitudes = harmonic_amplitudes(np.stack(last.three_phase("i")), last.dt_s, frequency_hz)
     fundamentals = amplitudes[:, 1]
     if last.t0_s > segment.t0_s:
         fundamentals = np.abs(components(np.stack(segment.three_phase("i")), segment.dt_s, frequency_hz))
-    floor = THD_FLOOR_PU * nominal.phase_current_peak_a
+    floor = floors.fundamental_pu * nominal.phase_current_peak_a
     # numpy's maximum keeps a NaN, which Python's max may lose: the worst of what is not known is not known.
     distortions = [d for phase in amplitudes if (d := distortion_percent(phase, floor)) is not None]
     return {

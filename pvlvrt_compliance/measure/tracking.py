@@ -11,10 +11,15 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_mean, one_cycle_phasor, running_integral
-from pvlvrt_compliance.measure.frequency import AMPLITUDE_FLOOR
-from pvlvrt_compliance.measure.sequences import SequencePhasors, sequence_phasors
-from pvlvrt_compliance.space_vectors import SQRT2_3, clarke
+from pvlvrt_compliance.measure.fourier import (
+    AMPLITUDE_FLOOR,
+    ComplexSamples,
+    one_cycle_mean,
+    one_cycle_phasor,
+    running_integral,
+)
+from pvlvrt_compliance.measure.sequences import sequence_phasors
+from pvlvrt_compliance.space_vectors import SQRT2_3, Sequences, clarke
 from pvlvrt_compliance.waveforms.container import Samples, Segment
 
 RANGE = 0.25
@@ -96,7 +101,7 @@ def _held(x: Samples, before: float) -> Samples:
     return np.where(last >= 0, x[last], before)
 
 
-def tracked_sequences(segment: Segment, kind: str, nominal_hz: float) -> SequencePhasors:
+def tracked_sequences(segment: Segment, kind: str, nominal_hz: float) -> Sequences:
     """Sequence phasors of the cycle that ends at each sample, the cycle being that of the measured frequency.
 
     X(t) = (2/T) integral of x exp(-j theta) over t - T .. t, dtheta/dt = 2 pi f, T = 1/f, and Fortescue's sequences of
@@ -116,7 +121,7 @@ def tracked_sequences(segment: Segment, kind: str, nominal_hz: float) -> Sequenc
 
     Returns
     -------
-    SequencePhasors
+    Sequences
         Peak values, shape (n,), angles referenced to the segment's first sample; NaN until there is a frequency: the
         first two cycles, and two and two thirds where there is no voltage.
 
@@ -132,11 +137,14 @@ def tracked_sequences(segment: Segment, kind: str, nominal_hz: float) -> Sequenc
     return phasors
 
 
-def steering_frequency(segment: Segment, kind: str, nominal_hz: float) -> tuple[Samples, int]:
+def steering_frequency(
+    segment: Segment, kind: str, nominal_hz: float, floor: float = AMPLITUDE_FLOOR
+) -> tuple[Samples, int]:
     """Frequency that one-cycle windows go by, and the sample from which they may be used.
 
     Median of the last five cycles of `tracked_frequency`, refreshed 16 times a cycle. Before the sample returned the
-    values are assumed, so that every window after it is whole. Parameters and errors as `tracked_sequences`.
+    values are assumed, so that every window after it is whole. Parameters and errors as `tracked_sequences`; ``floor``
+    (V or A, peak) as `tracked_frequency`.
 
     Returns
     -------
@@ -144,9 +152,9 @@ def steering_frequency(segment: Segment, kind: str, nominal_hz: float) -> tuple[
         Frequency (Hz), finite at every sample; index of the first sample that is measured.
     """
     try:
-        measured = tracked_frequency(segment, nominal_hz)
+        measured = tracked_frequency(segment, nominal_hz, floor=floor)
     except MeasurementError:
-        measured = tracked_frequency(segment, nominal_hz, kind)
+        measured = tracked_frequency(segment, nominal_hz, kind, floor)
     cycle = 1 / (nominal_hz * segment.dt_s)
     latest = math.ceil(2 * cycle / (1 - RANGE)) + 4  # by then two cycles of any frequency have passed
     known = np.flatnonzero(np.isfinite(measured[:latest]))

@@ -83,6 +83,34 @@ def standard_windows(
     )
 
 
+def stretch_window(
+    begin_s: float, end_s: float, frequency_hz: float, settled_cycles: float, rules: WindowRules = STANDARD_RULES
+) -> Span | None:
+    """Window of a stretch between two steps, in whole cycles, its end kept.
+
+    As `during` lies in a sag; in a stretch too short for that, all that is settled.
+
+    Parameters
+    ----------
+    begin_s, end_s : float
+        The steps (s).
+    frequency_hz : float
+        Frequency that the cycles are counted of (Hz).
+    settled_cycles : float
+        Cycles after a step in which no one-cycle quantity is settled.
+    rules : WindowRules
+        Where `during` lies.
+
+    Returns
+    -------
+    Span or None
+        None where not one settled cycle fits.
+    """
+    usual = Span(begin_s + rules.during_start_s, end_s - rules.during_end_s)
+    short = Span(begin_s + (settled_cycles - 1) / frequency_hz, end_s)
+    return _shorten(usual, frequency_hz) or _shorten(short, frequency_hz)
+
+
 def _shorten(span: Span, frequency_hz: float) -> Span | None:
     cycles = math.floor((span.end_s - span.start_s) * frequency_hz + _CYCLE_SLACK)
     return Span(span.end_s - cycles / frequency_hz, span.end_s) if cycles >= 1 else None

@@ -12,8 +12,7 @@ from pvlvrt_compliance.space_vectors import SQRT2_3, SQRT3_2
 from pvlvrt_compliance.vectors import Rotation, scaled
 
 NO_TRIP, OVERCURRENT, DC_OVERVOLTAGE, UNDERVOLTAGE, FREQUENCY = range(5)
-CAUSES = ("none", "overcurrent", "DC overvoltage", "undervoltage", "frequency")
-"""Causes of a trip by code."""
+"""Causes of a trip by code; `waveforms.trip_causes` has them in words."""
 
 _K = math.sqrt(2)  # gain of the relay's own quadrature generator, fixed at the nominal frequency
 _SMALL = 1e-4  # square of the positive sequence below which its turning is not measured any more (pu)

@@ -6,14 +6,14 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from pvlvrt_compliance.data.marks import weakest
+from pvlvrt_compliance.data.problems import dotted, problem_lines
 from pvlvrt_compliance.errors import UsageError
-from pvlvrt_compliance.problems import dotted, problem_lines
 from pvlvrt_compliance.profile.curves import Envelope
 from pvlvrt_compliance.profile.procedure import BY_ENVELOPE, Procedure, StepSequence, TestCase, TestRow
-from pvlvrt_compliance.profile.provenance import weakest
 from pvlvrt_compliance.profile.sequences import Step
 from pvlvrt_compliance.scenario.events import FurtherSag, VoltageProfile
-from pvlvrt_compliance.scenario.sag import Phases, Sag
+from pvlvrt_compliance.scenario.sag import PhaseNames, Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 
 _RESOLUTION_DIGITS = 9  # of V+ in pu: a sag to exactly the last level must not fall below it by rounding
@@ -127,7 +127,7 @@ def _steps(sequence: StepSequence, procedure: Procedure) -> tuple[float, tuple[V
     return ends[-1], (VoltageProfile(points=((0.0, 1.0), *levels, (ends[-1], 1.0))),)
 
 
-def _step_of(phases: Phases, t_s: float, step: Step) -> FurtherSag:
+def _step_of(phases: PhaseNames, t_s: float, step: Step) -> FurtherSag:
     """A step of some phases: a sag, since a voltage profile is of all phases."""
     if step.voltage_pu > 1:
         raise UsageError(f"steps.phases: a step to {step.voltage_pu:g} pu must be of all phases")

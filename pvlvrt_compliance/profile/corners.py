@@ -2,13 +2,13 @@
 
 from collections.abc import Iterator
 
+from pvlvrt_compliance.data.marks import weakest
 from pvlvrt_compliance.profile.curves import Side
 from pvlvrt_compliance.profile.procedure import TestRow
-from pvlvrt_compliance.profile.provenance import weakest
 from pvlvrt_compliance.profile.regions import FOR_EVER, STAY_CONNECTED, LinearTime, Region, RegionTable
 from pvlvrt_compliance.profile.sequences import CornerTests
 from pvlvrt_compliance.scenario.events import VoltageProfile
-from pvlvrt_compliance.scenario.sag import Phases, Sag
+from pvlvrt_compliance.scenario.sag import PhaseNames, Sag
 
 
 def corner_rows(table: RegionTable, tests: CornerTests) -> Iterator[TestRow]:
@@ -29,7 +29,7 @@ def _corners_pu(region: Region, side: Side, inside_pu: float) -> tuple[float, ..
     return (low,) if side is Side.LOW else (high,)
 
 
-def _row(table: RegionTable, tests: CornerTests, region: Region, voltage_pu: float, phases: Phases) -> TestRow:
+def _row(table: RegionTable, tests: CornerTests, region: Region, voltage_pu: float, phases: PhaseNames) -> TestRow:
     ride_s = region.ride_through_s(voltage_pu)
     assert ride_s < FOR_EVER  # the caller leaves out what must be ridden through for ever
     duration_s = round(ride_s - tests.inside_s, 6)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import AfterValidator, Field
 
-from pvlvrt_compliance.profile.provenance import Marked
+from pvlvrt_compliance.data.marks import Marked
 
 if TYPE_CHECKING:  # numpy takes longer to import than a profile takes to read: only what evaluates a curve imports it
     import numpy as np
@@ -92,6 +92,15 @@ class Envelope(Marked):
             return np.asarray(np.interp(np.asarray(t_s, dtype=np.float64), times, levels))
         reached = np.searchsorted(times, t_s, side="right") - 1
         return levels[np.maximum(reached, 0)]
+
+    def held(self, begin_s: float, end_s: float) -> tuple[tuple[float, float], ...]:
+        """Points (s, pu) that straight lines join as the envelope runs, from one time to another at least."""
+        drawn: list[tuple[float, float]] = []
+        for t, level in (*self.points, (max(end_s, self.points[-1][0]), self.points[-1][1])):
+            if drawn and self.interpolation == "step":
+                drawn.append((max(t, begin_s), drawn[-1][1]))
+            drawn.append((max(t, begin_s), level))
+        return tuple(drawn)
 
     def time_of(self, u_pu: float, side: Side = Side.LOW) -> float | None:
         """How long a voltage must be ridden through (s): the first instant the envelope passes it.

@@ -1,19 +1,17 @@
 """Profiles by name or from files, with all problems at once."""
 
-import json
-import stat
 from pathlib import Path
 
-from pydantic import ValidationError
-
+from pvlvrt_compliance.data.merging import Merged, merge_file
+from pvlvrt_compliance.data.models import validated
+from pvlvrt_compliance.data.search_path import find_profile, is_path, known_profiles, origin_of
+from pvlvrt_compliance.data.text import kind_of
 from pvlvrt_compliance.errors import ProfileError, UsageError, did_you_mean
-from pvlvrt_compliance.problems import problem_lines
-from pvlvrt_compliance.profile.merging import Merged, merge_file
-from pvlvrt_compliance.profile.profile import SCHEMA_VERSION, Profile
-from pvlvrt_compliance.profile.search_path import find_profile, is_path, known_profiles, origin_of
+from pvlvrt_compliance.profile.profile import SCHEMA_VERSION, Profile, profile_of
+from pvlvrt_compliance.profile.requirements import BUILT_IN, Kinds
 
 
-def load_profile(name_or_path: str) -> Profile:
+def load_profile(name_or_path: str, kinds: Kinds = BUILT_IN) -> Profile:
     """Read a profile and everything it includes.
 
     Tables merge key by key and the including file wins. A test with the id of an included one overrides it key by key,
@@ -23,6 +21,8 @@ def load_profile(name_or_path: str) -> Profile:
     ----------
     name_or_path : str
         A name that `known_profiles` has, or a path: ends in ``.toml`` or has a path separator.
+    kinds : mapping
+        Kinds of requirements that it may have, with their models (`checks.registry` knows those of other packages).
 
     Raises
     ------
@@ -32,8 +32,8 @@ def load_profile(name_or_path: str) -> Profile:
         When a file cannot be read or is not a valid profile; lists every problem with file, line and key.
     """
     path = profile_path(name_or_path)
-    merged = merge_file(path)
-    profile, problems = _validate(merged)
+    merged = merge_file(path, SCHEMA_VERSION)
+    profile, problems = _validate(merged, profile_of(_named(merged, kinds)))
     problems = [*merged.problems, *problems]
     if problems or profile is None:
         raise ProfileError(origin_of(path), problems)
@@ -61,21 +61,27 @@ def profile_path(name_or_path: str) -> Path:
 def _as_path(text: str) -> Path:
     path = Path(text)
     try:
-        mode = path.stat().st_mode
+        kind = kind_of(path.stat().st_mode)
     except (OSError, ValueError):
         raise UsageError(f"no profile file at {text!r}; known profiles: {', '.join(known_profiles())}") from None
-    if not stat.S_ISREG(mode):
-        kind = "a folder" if stat.S_ISDIR(mode) else "not an ordinary file"
+    if kind is not None:
         raise UsageError(f"no profile file at {text!r}: it is {kind}")
     return path
 
 
-def _validate(merged: Merged) -> tuple[Profile | None, list[str]]:
+def _named(merged: Merged, kinds: Kinds) -> Kinds:
+    """The built-in kinds, and of the others those that the profile names; where it names an unknown one, all."""
+    demands = merged.table.get("requirements")
+    named = [kind for kind in demands if kind not in BUILT_IN and kind != "custom"] if isinstance(demands, dict) else []
+    if all(kind in kinds for kind in named):
+        return {**BUILT_IN, **{kind: kinds[kind] for kind in named}}
+    return {**kinds}
+
+
+def _validate(merged: Merged, model: type[Profile]) -> tuple[Profile | None, list[str]]:
     """The profile, or None and its problems."""
     table = merged.table | {"schema_version": SCHEMA_VERSION}
-    try:
-        # Strict JSON mode is strict about numbers and texts, yet takes a list for a tuple.
-        profile = Profile.model_validate_json(json.dumps(table, default=str), strict=True)
-    except ValidationError as error:
-        return None, [merged.describe(where, text) for where, text in problem_lines(error, Profile, table)]
-    return profile, [merged.describe(where, text) for where, text in profile.inconsistencies()]
+    profile, problems = validated(model, table)
+    if profile is not None:
+        problems = profile.inconsistencies()
+    return profile, [merged.describe(where, text) for where, text in problems]

@@ -4,10 +4,10 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidatorFunctionWrapHandler, WrapValidator, model_validator
 
-from pvlvrt_compliance.profile.provenance import Fraction, Frozen, Marked, NotNegative, Number, Numbers, Positive
+from pvlvrt_compliance.data.marks import Fraction, Frozen, Marked, NotNegative, Number, Numbers, Positive
 from pvlvrt_compliance.profile.sequences import CornerTests, StepTable
 from pvlvrt_compliance.scenario.events import Event
-from pvlvrt_compliance.scenario.sag import Phases, Sag
+from pvlvrt_compliance.scenario.sag import PhaseNames, Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 
 BY_ENVELOPE = "envelope"
@@ -61,10 +61,10 @@ class Detection(Frozen):
             raise ValueError("leave_below_pu: must not be above enter_above_pu")
         return self
 
-    def is_event(self, v_positive_pu: float) -> bool:
-        """Whether a sag or a swell begins at a V+ (pu)."""
-        swell = self.enter_above_pu
-        return v_positive_pu < self.enter_below_pu.value or (swell is not None and v_positive_pu > swell.value)
+    def is_event(self, v_positive_pu: Any) -> Any:
+        """Whether a sag or a swell begins at a V+ (pu): of a number, or of each in an array."""
+        low = v_positive_pu < self.enter_below_pu.value
+        return low if self.enter_above_pu is None else low | (v_positive_pu > self.enter_above_pu.value)
 
 
 class Procedure(Frozen):
@@ -94,7 +94,7 @@ class StepSequence(Frozen):
 
     table: str = Field(description="one of procedure.steps")
     order: str = Field(min_length=1, description="letters of the steps, each with its primes: ABCD'F")
-    phases: Phases = Field(default="abc", description="that the steps are of; steps of some phases go up to 1 pu only")
+    phases: PhaseNames = Field(default="abc", description="that the steps are of; those of some phases go up to 1 pu")
 
 
 class TestRow(Marked):

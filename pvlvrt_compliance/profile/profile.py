@@ -2,18 +2,19 @@
 
 import hashlib
 from collections.abc import Collection, Iterator
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, create_model
 
+from pvlvrt_compliance.data.marks import VERIFIED, Frozen, canonical_json, marks_in, weakest
 from pvlvrt_compliance.errors import UsageError, did_you_mean
 from pvlvrt_compliance.profile.catalogue import expand, make_scenario, sag_duration_s
 from pvlvrt_compliance.profile.corners import corner_rows
 from pvlvrt_compliance.profile.curves import Envelope
 from pvlvrt_compliance.profile.procedure import Conditions, Detection, Procedure, TestCase, TestRow, Windows
-from pvlvrt_compliance.profile.provenance import VERIFIED, Frozen, canonical_json, marks_in, weakest
-from pvlvrt_compliance.profile.requirements import Requirements
+from pvlvrt_compliance.profile.requirements import Kinds, Requirements, RideThrough, requirements_of
+from pvlvrt_compliance.profile.thresholds import STANDARD_THRESHOLDS, Thresholds
 from pvlvrt_compliance.scenario.sag import Sag
 
 SCHEMA_VERSION = 1
@@ -29,13 +30,14 @@ class Profile(Frozen):
     conditions: Conditions
     windows: Windows | None = Field(default=None, description="without it, the standard windows")
     detection: Detection | None = Field(default=None, description="without it, the sag that was asked for is the event")
+    thresholds: Thresholds = Field(default=STANDARD_THRESHOLDS, description="floors and thresholds of measurement")
     procedure: Procedure
     rows: tuple[TestRow, ...] = Field(default=(), alias="tests")
 
     @cached_property
     def all_rows(self) -> tuple[TestRow, ...]:
         """The test table, and the rows made from the regions."""
-        regions = self.requirements.ride_through.regions if self.requirements.ride_through else None
+        regions = self.ride_through.regions if self.ride_through else None
         if regions is None or self.procedure.corners is None:
             return self.rows
         return (*self.rows, *corner_rows(regions, self.procedure.corners))
@@ -43,8 +45,13 @@ class Profile(Frozen):
     @property
     def envelope(self) -> Envelope | None:
         """The ride-through envelope, where the profile has one."""
-        ride_through = self.requirements.ride_through
-        return ride_through.envelope if ride_through else None
+        return self.ride_through.envelope if self.ride_through else None
+
+    @property
+    def ride_through(self) -> RideThrough | None:
+        """What decides how long a sag lasts that is to be ridden through, where the profile has it."""
+        found = self.requirements.of_kind("ride_through")
+        return found if isinstance(found, RideThrough) else None
 
     @property
     def digest(self) -> str:
@@ -104,6 +111,7 @@ class Profile(Frozen):
         give a test in ``case_ids``; without it, all. Rows with the same mark and source share a sentence.
         """
         parts = [*self.requirements.by_kind(), ("conditions", self.conditions), ("procedure", self.procedure)]
+        parts.append(("thresholds", self.thresholds))
         parts += [(name, part) for name in ("windows", "detection") if (part := getattr(self, name)) is not None]
         sentences = [
             f"{part} {name}: {item.confidence} ({item.source})"
@@ -145,3 +153,16 @@ class Profile(Frozen):
             if name not in kinds:
                 hint = did_you_mean(name, kinds) or f"; it has: {', '.join(kinds)}"
                 yield f"{name!r} is no requirement of this profile{hint}"
+
+
+def profile_of(kinds: Kinds) -> type[Profile]:
+    """Model of a profile whose demands may be of these kinds."""
+    return _model(requirements_of(kinds))
+
+
+@cache
+def _model(requirements: type[Requirements]) -> type[Profile]:
+    made: type[Profile] = create_model(
+        "Profile", __base__=Profile, __doc__=Profile.__doc__, __module__=__name__, requirements=(requirements, ...)
+    )
+    return made

@@ -5,9 +5,9 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from pvlvrt_compliance.problems import A_NUMBER, A_TABLE
+from pvlvrt_compliance.data.marks import Frozen, Marked
+from pvlvrt_compliance.data.problems import A_NUMBER, A_TABLE
 from pvlvrt_compliance.profile.curves import Side, VoltageQuantity
-from pvlvrt_compliance.profile.provenance import Frozen, Marked
 
 Mode = Literal[
     "continuous", "mandatory", "permissive", "momentary_cessation", "cease_to_energize", "may_trip", "must_trip"

@@ -5,8 +5,8 @@ from typing import Self
 
 from pydantic import Field, model_validator
 
-from pvlvrt_compliance.profile.provenance import Frozen, Marked
-from pvlvrt_compliance.scenario.sag import Phases
+from pvlvrt_compliance.data.marks import Frozen, Marked
+from pvlvrt_compliance.scenario.sag import PhaseNames
 
 _STEP = re.compile(r"[A-Z]'*")
 
@@ -53,6 +53,6 @@ class CornerTests(Marked):
     inside_pu: float = Field(gt=0, description="voltage, from the level")
     inside_s: float = Field(gt=0, description="shorter than the time")
     powers: tuple[str, ...] = Field(min_length=1)
-    phases: tuple[Phases, ...] = Field(default=("abc",), min_length=1, description="of a sag; swells are of all phases")
+    phases: tuple[PhaseNames, ...] = Field(default=("abc",), min_length=1, description="of sags; swells have all")
     checks: tuple[str, ...] | None = Field(default=None, min_length=1, description="kinds judged; none: all")
     long_from_s: float = Field(default=600.0, gt=0, description="longer tests run on request only")

@@ -5,7 +5,7 @@ from typing import Self
 
 from pydantic import Field, model_validator
 
-from pvlvrt_compliance.profile.provenance import Frozen, Marked
+from pvlvrt_compliance.data.marks import Frozen, Marked
 
 
 class FrequencyBand(Frozen):

@@ -7,9 +7,9 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from pvlvrt_compliance.checks.results import EXIT_STATUS, Results, Status, TestResult
 from pvlvrt_compliance.report import format as spell
 from pvlvrt_compliance.report.verdicts import Finding, counts, findings, verdicts
+from pvlvrt_compliance.results import EXIT_STATUS, Results, Status, TestResult
 
 _SHORT = {
     Status.ERROR: "error",

@@ -4,20 +4,17 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from pvlvrt_compliance.checks.results import TestResult
 from pvlvrt_compliance.report.decimation import BUCKETS, Trace, typed_array
-from pvlvrt_compliance.report.panels import BLACK, BLUE, GREY, VERMILION, Curve, Line, Panel, opening_s, panels
-from pvlvrt_compliance.report.scenario_words import sag_interval
+from pvlvrt_compliance.report.instants import ROW_PX, Figure, labels, shapes, steps_of
+from pvlvrt_compliance.report.panels import BLACK, GREY, Curve, Line, Panel, panels
+from pvlvrt_compliance.results import TestResult
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Waveforms
-
-Figure = dict[str, Any]
 
 _HEIGHT_PX = 150.0
 _GAP_PX = 30.0
 _TOP_PX = 100.0
 _BOTTOM_PX = 44.0
-_ROW_PX = 15
 _BEFORE_S, _AFTER_S = 0.02, 0.08  # what the zoom on an instant shows
 _FONT = "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', Arial, sans-serif"
 
@@ -38,8 +35,6 @@ def test_figure(
     waveforms: Waveforms,
     test: TestResult,
     nominal: Nominal,
-    envelope: Sequence[tuple[float, float]] | None = None,  # noqa: PT028
-    limits: Mapping[str, float] | None = None,  # noqa: PT028
     buckets: int = BUCKETS,  # noqa: PT028
 ) -> Figure:
     """Draw voltages, sequence voltages, currents, powers and DC voltage over one common time axis.
@@ -49,14 +44,9 @@ def test_figure(
     waveforms : Waveforms
         The record; channels that it does not hold leave their panel out.
     test : TestResult
-        Gives the instants of the sag, the measurement window and the verdicts' limits.
+        Gives the steps of the disturbance, the measurement window and the bands of its verdicts.
     nominal : Nominal
         Base of the per-unit values.
-    envelope : sequence of (s, pu), optional
-        Ride-through envelope, time from the start of the sag; the points are joined by straight lines.
-    limits : mapping, optional
-        ``current_fundamental_pu``, ``current_peak_pu`` and ``reactive_power_kvar``; the last is by default the limit of
-        the verdict on `reactive_support`.
     buckets : int
         Of a decimated signal, see `decimate`.
 
@@ -65,7 +55,7 @@ def test_figure(
     dict
         ``{"data": [...], "layout": {...}}`` for plotly.js 3 or later, ready for JSON.
     """
-    found = panels(waveforms, test, nominal, envelope, {**_limits_of(test), **(limits or {})}, buckets)
+    found = panels(waveforms, test, nominal, buckets)
     plot_px = sum(panel.height for panel in found) * _HEIGHT_PX + max(len(found) - 1, 0) * _GAP_PX
     placed = list(zip(found, _places(found, plot_px), strict=True))
     layout = {
@@ -73,8 +63,8 @@ def test_figure(
         "height": round(plot_px + _TOP_PX + _BOTTOM_PX),
         "xaxis": _time_axis(waveforms, anchor=f"y{placed[-1][1].suffix}" if placed else "y"),
         "updatemenus": [_zoom_buttons(waveforms, test)],
-        "shapes": [*_bands(test), *_opening_line(waveforms)],
-        "annotations": [*_instants(test), *_opening_label(waveforms), *(_title(p, at) for p, at in placed)],
+        "shapes": shapes(waveforms, test),
+        "annotations": [*labels(waveforms, test), *(_title(p, at) for p, at in placed)],
     }
     for panel, at in placed:
         layout[f"yaxis{at.suffix}"] = _value_axis(panel, at)
@@ -116,13 +106,6 @@ _AXIS: Mapping[str, Any] = {
 }
 
 
-def _limits_of(test: TestResult) -> dict[str, float]:
-    for check in test.checks:
-        if check.check == "reactive_support" and check.unit == "kvar" and check.limit is not None:
-            return {"reactive_power_kvar": check.limit}
-    return {}
-
-
 def _places(found: Sequence[Panel], plot_px: float) -> Iterator[_Place]:
     top_px = plot_px
     for order, panel in enumerate(found, start=1):
@@ -144,13 +127,16 @@ def _time_axis(waveforms: Waveforms, anchor: str) -> Figure:
 
 
 def _zoom_buttons(waveforms: Waveforms, test: TestResult) -> Figure:
-    """Buttons that show the whole record, the sag, or a few cycles around one of its instants."""
+    """Buttons that show the whole record, the disturbance, or a few cycles around its first or its last step."""
     spans = {"whole record": (waveforms.t0_s, waveforms.end_s)}
-    if sag := sag_interval(test.scenario):
-        margin_s = 0.1 * (sag.clear_s - sag.start_s)
-        spans["sag"] = (sag.start_s - margin_s, sag.clear_s + margin_s)
-        spans["start"] = (sag.start_s - _BEFORE_S, sag.start_s + _AFTER_S)
-        spans["clearing"] = (sag.clear_s - _BEFORE_S, sag.clear_s + _AFTER_S)
+    if steps := steps_of(test):
+        first_s, last_s = steps[0].at_s, steps[-1].at_s
+        if last_s > first_s:
+            margin_s = 0.1 * (last_s - first_s)
+            spans["disturbance"] = (first_s - margin_s, last_s + margin_s)
+        spans["start"] = (first_s - _BEFORE_S, first_s + _AFTER_S)
+        if last_s > first_s:
+            spans["end"] = (last_s - _BEFORE_S, last_s + _AFTER_S)
     return {
         "type": "buttons",
         "direction": "right",
@@ -159,7 +145,7 @@ def _zoom_buttons(waveforms: Waveforms, test: TestResult) -> Figure:
         "xanchor": "left",
         "y": 1,
         "yanchor": "bottom",
-        "pad": {"b": 5 + 4 * _ROW_PX, "t": 0, "l": 0, "r": 0},
+        "pad": {"b": 5 + 4 * ROW_PX, "t": 0, "l": 0, "r": 0},
         "font": {"size": 11},
         "buttons": [
             {"label": name, "method": "relayout", "args": [{"xaxis.range": list(span)}]} for name, span in spans.items()
@@ -209,80 +195,6 @@ def _limit_trace(line: Line) -> Figure:
         "line": {"color": line.colour, "width": 1.8, "dash": line.dash},
         "hoverinfo": "skip",
         **area,
-    }
-
-
-def _band(start_s: float, end_s: float, colour: str) -> Figure:
-    return {
-        "type": "rect",
-        "layer": "below",
-        "xref": "x",
-        "yref": "paper",
-        "x0": start_s,
-        "x1": end_s,
-        "y0": 0,
-        "y1": 1,
-        "line": {"width": 0},
-        "fillcolor": colour,
-    }
-
-
-def _vertical(at_s: float, colour: str, dash: str) -> Figure:
-    return {
-        "type": "line",
-        "xref": "x",
-        "yref": "paper",
-        "x0": at_s,
-        "x1": at_s,
-        "y0": 0,
-        "y1": 1,
-        "line": {"color": colour, "width": 1, "dash": dash},
-    }
-
-
-def _bands(test: TestResult) -> Iterator[Figure]:
-    sag, during = sag_interval(test.scenario), test.measurements.during
-    if sag:
-        yield _band(*sag, "rgba(0,0,0,0.045)")
-    if during:
-        yield _band(during.start_s, during.end_s, "rgba(0,114,178,0.10)")
-    if sag:
-        yield from (_vertical(at_s, GREY, "dash") for at_s in sag)
-
-
-def _opening_line(waveforms: Waveforms) -> Iterator[Figure]:
-    at_s = opening_s(waveforms)
-    if at_s is not None:
-        yield _vertical(at_s, VERMILION, "solid")
-
-
-def _instants(test: TestResult) -> Iterator[Figure]:
-    sag, during = sag_interval(test.scenario), test.measurements.during
-    if sag:
-        yield _label(sag.start_s, f"sag starts {sag.start_s:.3f} s", "right", row=1)
-        yield _label(sag.clear_s, f"cleared {sag.clear_s:.3f} s", "left", row=1)
-    if during:
-        yield _label((during.start_s + during.end_s) / 2, "window “during”", "center", row=2, colour=BLUE)
-
-
-def _opening_label(waveforms: Waveforms) -> Iterator[Figure]:
-    at_s = opening_s(waveforms)
-    if at_s is not None:
-        yield _label(at_s, f"breaker opens {at_s:.3f} s", "left", row=3, colour=VERMILION)
-
-
-def _label(at_s: float, text: str, anchor: str, row: int, colour: str = BLACK) -> Figure:
-    return {
-        "text": text,
-        "x": at_s,
-        "xref": "x",
-        "xanchor": anchor,
-        "y": 1,
-        "yref": "paper",
-        "yanchor": "bottom",
-        "yshift": 5 + _ROW_PX * row,
-        "showarrow": False,
-        "font": {"size": 11, "color": colour},
     }
 
 

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from pvlvrt_compliance.checks.results import Check, Status
+from pvlvrt_compliance.results import Status, Verdict
 
 _DECIMALS_BY_UNIT = {"kW": 1, "kvar": 1, "pu": 3, "V": 1, "A": 1, "%": 3, "s": 3, "ms": 1, "Hz": 2, "kHz": 2}
 _MAX_DECIMALS = 9
@@ -69,7 +69,7 @@ def number(value: float | None, unit: str = "", decimals: int | None = None, sig
     return f"{text} {unit}".rstrip()
 
 
-def row(check: Check) -> Row:
+def row(check: Verdict) -> Row:
     """Measured value, limit and margin, with decimals enough that a margin other than zero never reads as zero."""
     values = [v for v in (check.measured, check.limit, check.margin) if v is not None]
     places = max((_decimals(v, check.unit) for v in values), default=0)

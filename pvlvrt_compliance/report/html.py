@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from pvlvrt_compliance.checks.results import Check, Results, Status, TestResult
 from pvlvrt_compliance.errors import PvlvrtError
 from pvlvrt_compliance.report import format as spell
-from pvlvrt_compliance.report import measurement_table, scenario_words
+from pvlvrt_compliance.report import measurement_table
 from pvlvrt_compliance.report.provenance import provenance_groups
 from pvlvrt_compliance.report.verdicts import counts, findings, is_verified, name_of, verdicts
 from pvlvrt_compliance.resources import resource_folder
+from pvlvrt_compliance.results import Results, Status, TestResult, Verdict
 
 
 class _SummaryTable(NamedTuple):
@@ -84,7 +84,6 @@ def _environment(folder: Path) -> Environment:
         word=lambda status: spell.STATUS_WORD[Status(status)],
         symbol=lambda status: spell.STATUS_SYMBOL[Status(status)],
         is_verified=is_verified,
-        facts=scenario_words.facts,
         window_headings=measurement_table.window_headings,
         measured_rows=measurement_table.measured_rows,
         belief_rows=measurement_table.belief_rows,
@@ -104,7 +103,7 @@ def _summary_table(profile: str, tests: list[tuple[int, TestResult]]) -> _Summar
     return _SummaryTable(profile, list(names), tests)
 
 
-def _check_of(test: TestResult, name: str) -> list[Check]:
+def _check_of(test: TestResult, name: str) -> list[Verdict]:
     return [check for check in verdicts(test) if check.check == name]
 
 

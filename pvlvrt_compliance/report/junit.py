@@ -5,9 +5,9 @@ import re
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 
-from pvlvrt_compliance.checks.results import Check, ProfileSummary, Results, Status, TestResult
 from pvlvrt_compliance.report import format as spell
 from pvlvrt_compliance.report.verdicts import verdicts
+from pvlvrt_compliance.results import ProfileSummary, Results, Status, TestResult, Verdict
 
 _NOT_IN_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
@@ -75,7 +75,7 @@ def _properties(test: TestResult, profile: ProfileSummary | None, run: Mapping[s
     return properties
 
 
-def _details(check: Check) -> str:
+def _details(check: Verdict) -> str:
     numbers = spell.row(check)
     parts = {**numbers._asdict(), "at": spell.number(check.at_s, "s"), "clause": check.clause}
     parts["confidence"] = check.confidence

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from pvlvrt_compliance.measure.quantities import ControllerBeliefs, Measurements, WindowMeasurements
+from pvlvrt_compliance.measure.quantities import ControllerBeliefs, MeasuredWindows, WindowMeasurements
 from pvlvrt_compliance.report.format import number
 
 WINDOWS = ("before", "during", "after")
@@ -46,12 +46,12 @@ _QUANTITIES = (
 )
 
 
-def window_headings(measurements: Measurements) -> list[tuple[str, str]]:
+def window_headings(measurements: MeasuredWindows) -> list[tuple[str, str]]:
     """Name and span of each window."""
     return [_heading(name, getattr(measurements, name)) for name in WINDOWS]
 
 
-def measured_rows(measurements: Measurements) -> list[MeasuredRow]:
+def measured_rows(measurements: MeasuredWindows) -> list[MeasuredRow]:
     """Rows of all quantities that at least one window has."""
     windows = [getattr(measurements, name) for name in WINDOWS]
     rows = [

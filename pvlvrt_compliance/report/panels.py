@@ -1,18 +1,25 @@
 """What the figure of a test shows: panels of signals, each with its limits."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from pvlvrt_compliance.checks.results import TestResult
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.measure.power import instantaneous_power
 from pvlvrt_compliance.measure.sequences import sequence_phasors
 from pvlvrt_compliance.report.decimation import BUCKETS, Samples, Trace, decimate
-from pvlvrt_compliance.report.scenario_words import sag_interval
+from pvlvrt_compliance.results import Band, TestResult
+from pvlvrt_compliance.results.band import (
+    ACTIVE_POWER,
+    CURRENT,
+    DC_VOLTAGE,
+    REACTIVE_POWER,
+    VOLTAGE_NEGATIVE,
+    VOLTAGE_POSITIVE,
+)
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Segment, Waveforms
 from pvlvrt_compliance.waveforms.joining import one_cycle_series
@@ -20,13 +27,7 @@ from pvlvrt_compliance.waveforms.joining import one_cycle_series
 # Tol's high-contrast colours for the phases: told apart with every common colour blindness and in grey on paper.
 _PHASE_COLOURS = {"a": "#004488", "b": "#DDAA33", "c": "#BB5566"}
 BLUE, VERMILION, PURPLE, GREY, BLACK = "#0072B2", "#C44E00", "#9A3D8F", "#767676", "#222222"
-
-LIMIT_NAMES = {
-    "current_fundamental_pu": "limit, fundamental",
-    "current_peak_pu": "limit, peak",
-    "reactive_power_kvar": "limit of Q",
-}
-"""Limits that can be drawn, by key, with their name in the legend."""
+_DASHES = ("dash", "dot", "dashdot", "longdash")
 
 
 class Curve(NamedTuple):
@@ -63,52 +64,45 @@ Signals = Mapping[str, tuple[str, Samples]]
 """Colour and samples of the signals of a panel, by name, for one segment."""
 
 
-def panels(
-    waveforms: Waveforms,
-    test: TestResult,
-    nominal: Nominal,
-    envelope: Sequence[tuple[float, float]] | None,
-    limits: Mapping[str, float],
-    buckets: int = BUCKETS,
-) -> list[Panel]:
+def panels(waveforms: Waveforms, test: TestResult, nominal: Nominal, buckets: int = BUCKETS) -> list[Panel]:
     """Panels of a test; one whose channels the record does not hold is left out."""
     before = test.measurements.before
     frequency_hz = (before.frequency_hz if before else None) or nominal.frequency_hz
-    sag = sag_interval(test.scenario)
-    span = (waveforms.t0_s, waveforms.end_s)
     curves = partial(_curves, waveforms, _shares(waveforms, buckets))
     voltage = curves(_each(waveforms, lambda s: _three_phase(s, "u", nominal.phase_voltage_peak_v)))
     sequences = curves(_sequences(waveforms, frequency_hz, nominal))
     current = curves(_each(waveforms, lambda s: _three_phase(s, "i", nominal.phase_current_peak_a)))
     power = curves(_each(waveforms, _power))
     dc_voltage = curves(_each(waveforms, lambda s: {"v<sub>DC</sub>": (BLACK, s["v_dc_v"])}))
+    limits = partial(_limits, test.bands)
     found = [
         Panel("Phase-to-neutral voltages", "pu", 1.0, voltage),
-        Panel(
-            "Sequence voltages, one cycle",
-            "pu",
-            1.0,
-            sequences,
-            [_envelope(envelope, sag.start_s, span[1])] if envelope and sag else [],
-            from_zero=True,
-        ),
-        Panel("Phase currents", "pu", 1.2, current, _current_limits(limits, span)),
-        Panel("Active and reactive power", "kW, kvar", 1.2, power, _q_limit(limits, test)),
-        Panel("DC voltage", "V", 0.8, dc_voltage),
+        Panel("Sequence voltages, one cycle", "pu", 1.0, sequences, limits(VOLTAGE_POSITIVE, VOLTAGE_NEGATIVE), True),
+        Panel("Phase currents", "pu", 1.2, current, limits(CURRENT)),
+        Panel("Active and reactive power", "kW, kvar", 1.2, power, limits(ACTIVE_POWER, REACTIVE_POWER)),
+        Panel("DC voltage", "V", 0.8, dc_voltage, limits(DC_VOLTAGE)),
     ]
     return [panel for panel in found if panel.curves]
 
 
-def opening_s(waveforms: Waveforms) -> float | None:
-    """Instant at which the breaker opens, by the channel ``connected``; None where it never does or is not recorded."""
-    was_closed = False
-    for segment in waveforms:
-        closed = segment.channels.get("connected", np.ones(0)) > 0.5
-        opened = np.flatnonzero(np.concatenate([[was_closed], closed[:-1]])[: len(closed)] & ~closed)
-        if len(opened):
-            return segment.t0_s + float(opened[0]) * segment.dt_s
-        was_closed = bool(len(closed) and closed[-1])
-    return None
+def _limits(bands: Sequence[Band], *quantities: str) -> list[Line]:
+    """Bands of what a panel shows; those of one quantity differ in their dashes."""
+    lines: list[Line] = []
+    for quantity in quantities:
+        here = [band for band in bands if band.quantity == quantity]
+        lines += [_line(band, _DASHES[k % len(_DASHES)]) for k, band in enumerate(here)]
+    return lines
+
+
+def _line(band: Band, dash: str) -> Line:
+    """A band as one line there and back, so that the legend shows its edges once; below a floor alone it is shaded."""
+    colour = BLACK if band.quantity == CURRENT else VERMILION
+    edges = [edge for edge in (band.upper, band.lower) if edge is not None]
+    if len(edges) == 1:
+        area = band.quantity == VOLTAGE_POSITIVE and band.upper is None
+        return Line(band.name, band.t_s, edges[0], dash, colour, area=area)
+    x = [*band.t_s, band.t_s[-1], *reversed(band.t_s)]
+    return Line(band.name, x, [*edges[0], np.nan, *reversed(edges[1])], dash, colour)
 
 
 def _curves(waveforms: Waveforms, shares: Sequence[int], signals: Sequence[Signals]) -> list[Curve]:
@@ -172,29 +166,3 @@ def _sequences(waveforms: Waveforms, frequency_hz: float, nominal: Nominal) -> l
 def _power(segment: Segment) -> Signals:
     power = instantaneous_power(segment)
     return {"P": (BLACK, power.p / 1e3), "Q": (PURPLE, power.q / 1e3)}
-
-
-def _envelope(envelope: Iterable[tuple[float, float]], start_s: float, end_s: float) -> Line:
-    """Envelope from the start of the sag on; its last value holds to the end of the record."""
-    x, y = (list(axis) for axis in zip(*envelope, strict=True))
-    x = [start_s + t for t in x]
-    return Line("ride-through envelope", [*x, max(end_s, x[-1])], [*y, y[-1]], "dash", VERMILION, area=True)
-
-
-def _current_limits(limits: Mapping[str, float], span: tuple[float, float]) -> list[Line]:
-    lines = []
-    for key, dash in (("current_fundamental_pu", "dash"), ("current_peak_pu", "dot")):
-        if key in limits:
-            # One line there and back, so that the legend shows the pair once.
-            x = [*span, span[1], *reversed(span)]
-            y = [limits[key], limits[key], np.nan, -limits[key], -limits[key]]
-            lines.append(Line(LIMIT_NAMES[key], x, y, dash))
-    return lines
-
-
-def _q_limit(limits: Mapping[str, float], test: TestResult) -> list[Line]:
-    during = test.measurements.during
-    if during is None or "reactive_power_kvar" not in limits:
-        return []
-    value = limits["reactive_power_kvar"]
-    return [Line(LIMIT_NAMES["reactive_power_kvar"], [during.start_s, during.end_s], [value, value], "dash", VERMILION)]

@@ -78,7 +78,7 @@ def _range(values: list[float]) -> Point:
 
 
 def _over_time(profile: Profile, scale: Scale | None) -> Iterator[Panel]:
-    ride_through = profile.requirements.ride_through
+    ride_through = profile.ride_through
     if ride_through is None:
         return
     envelopes = {name: envelope for name, envelope in _envelopes(ride_through) if envelope is not None}
@@ -90,7 +90,7 @@ def _over_time(profile: Profile, scale: Scale | None) -> Iterator[Panel]:
     end_s = _BEYOND * max(times, default=1.0)
     scale = scale or ("log" if times and max(times) > _LOG_FROM * min(times) else "linear")
     begin_s = min([_SHORTEST_S, *(t / 2 for t in times)]) if scale == "log" else 0.0
-    lines = [Line(_label(name, env), _held(env, begin_s, end_s)) for name, env in envelopes.items()]
+    lines = [Line(_label(name, env), env.held(begin_s, end_s)) for name, env in envelopes.items()]
     areas = list(_areas(ride_through.regions, begin_s, end_s)) if ride_through.regions else []
     if scale == "log":
         lines = [line._replace(points=_bent(line.points)) for line in lines]
@@ -108,16 +108,6 @@ def _envelopes(ride_through: RideThrough) -> Iterator[tuple[str, Envelope | None
 
 def _label(name: str, envelope: Envelope) -> str:
     return f"{name} ({envelope.voltage_quantity.replace('_', ' ')}) [{envelope.confidence}]"
-
-
-def _held(envelope: Envelope, begin_s: float, end_s: float) -> Points:
-    """Points of an envelope from one time to another, steps drawn as steps."""
-    drawn: list[Point] = []
-    for t, level in (*envelope.points, (end_s, envelope.points[-1][1])):
-        if drawn and envelope.interpolation == "step":
-            drawn.append((max(t, begin_s), drawn[-1][1]))
-        drawn.append((max(t, begin_s), level))
-    return tuple(drawn)
 
 
 def _bent(points: Points) -> Points:
@@ -153,17 +143,17 @@ def _until(row: Region, u_pu: float, begin_s: float, end_s: float) -> float:
 def _over_voltage(profile: Profile) -> Iterator[Panel]:
     demands = profile.requirements
     x_label = "positive-sequence voltage (pu)"
-    if support := demands.reactive_support:
+    if support := demands.of_kind("reactive_support"):
         line = Line(f"demanded [{support.curve.confidence}]", support.curve.points)
         yield Panel("Reactive support", x_label, "reactive power (pu of rated)", "linear", (line,))
-    if demand := demands.reactive_current:
+    if demand := demands.of_kind("reactive_current"):
         x_text = "change of the positive-sequence voltage (pu)"
         yield _additional_current("Additional reactive current", x_text, demand, _changes_pu(demand))
-    if demand := demands.negative_sequence_current:
+    if demand := demands.of_kind("negative_sequence_current"):
         sizes = tuple(-u_pu for u_pu in reversed(_changes_pu(demand)) if u_pu <= 0)
         x_text = "change of the negative-sequence voltage (pu)"
         yield _additional_current("Additional reactive current, negative sequence", x_text, demand, sizes)
-    if ratio := demands.reactive_ratio:
+    if ratio := demands.of_kind("reactive_ratio"):
         line = Line(f"at least [{ratio.curve.confidence}]", ratio.curve.points)
         yield Panel("Reactive share of the current", x_label, "share of the total current", "linear", (line,))
 

@@ -6,9 +6,9 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from pvlvrt_compliance.data.marks import VERIFIED, Choice, Flag, Marked, Number, Numbers
 from pvlvrt_compliance.profile.procedure import TestRow
 from pvlvrt_compliance.profile.profile import Profile
-from pvlvrt_compliance.profile.provenance import VERIFIED, Choice, Flag, Marked, Number, Numbers
 
 _UNITS = {
     "_s_per_pu": "s/pu",
@@ -39,6 +39,7 @@ def render(profile: Profile) -> str:
         ("CONDITIONS: when a test counts", profile.conditions),
         ("WINDOWS: where a record is measured", profile.windows),
         ("DETECTION: what is an event in a record", profile.detection),
+        ("THRESHOLDS: what is measured, and how exactly", profile.thresholds),
         ("PROCEDURE: what all tests share", profile.procedure),
     ):
         if part is not None:

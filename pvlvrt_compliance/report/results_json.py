@@ -2,7 +2,7 @@
 
 import json
 
-from pvlvrt_compliance.checks.results import Results
+from pvlvrt_compliance.results import Results
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from pvlvrt_compliance.checks.results import Check, Results, Status, TestResult
-from pvlvrt_compliance.profile.provenance import VERIFIED
+from pvlvrt_compliance.data.marks import VERIFIED
+from pvlvrt_compliance.results import Results, Status, TestResult, Verdict
 
 
 class Finding(NamedTuple):
@@ -20,9 +20,9 @@ def name_of(test: TestResult, results: Results) -> str:
     return test.key if len(results.profiles) > 1 else test.id
 
 
-def verdicts(test: TestResult) -> tuple[Check, ...]:
+def verdicts(test: TestResult) -> tuple[Verdict, ...]:
     """Checks of a test; a test that ended before any check still has one verdict, its own."""
-    return test.checks or (Check(check="test", status=test.status, message="no check was evaluated"),)
+    return test.checks or (Verdict(check="test", status=test.status, message="no check was evaluated"),)
 
 
 def findings(results: Results) -> list[Finding]:

@@ -1,11 +1,11 @@
 """Scenario files that people write."""
 
-import tomllib
 from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict
 
-from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.data.reader import Kind, Source, read_model
+from pvlvrt_compliance.errors import UsageError, listed
 from pvlvrt_compliance.scenario.events import Event
 
 
@@ -17,25 +17,15 @@ class EventsFile(BaseModel):
     events: tuple[Event, ...]
 
 
+EVENTS = Kind("an events file", "events files", lambda origin, problems: UsageError(listed(origin, problems)))
+
+
 def load_events(path: str) -> tuple[Event, ...]:
     """Read events from a TOML file.
 
     Raises
     ------
     UsageError
-        When the file cannot be read or an event cannot be used; all problems at once, each with its key.
+        When the file cannot be read or an event cannot be used; all problems at once, each with its line and key.
     """
-    try:
-        table = tomllib.loads(Path(path).read_text("utf-8"))
-        return EventsFile.model_validate(table).events
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read ({error.strerror})") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise UsageError(f"{path}: not TOML ({error})") from None
-    except ValidationError as error:
-        problems = [f"  {_key(problem['loc'])}: {problem['msg']}" for problem in error.errors()]
-        raise UsageError("\n".join([f"{path}: {len(problems)} problem(s)", *problems])) from None
-
-
-def _key(location: tuple[int | str, ...]) -> str:
-    return ".".join(f"[{part}]" if isinstance(part, int) else part for part in location).replace(".[", "[")
+    return read_model(Source(Path(path), EVENTS), EventsFile).events

@@ -17,7 +17,7 @@ PhaseValues = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 Precision = Literal["double", "single"]
 Fidelity = Literal["averaged", "switched"]
 PowerStrategy = Literal["constant-p-q", "constant-p-light-q", "constant-p-sinusoidal", "constant-q", "balanced"]
-Synchronisation = Literal["msogi-fll", "dsogi-fll", "srf-pll", "ddsrf-pll", "dsc-pll"]
+SynchronisationName = Literal["msogi-fll", "dsogi-fll", "srf-pll", "ddsrf-pll", "dsc-pll"]
 
 
 class _Group(BaseModel):
@@ -98,7 +98,7 @@ class ProtectionParameters(_Group):
 class ControllerParameters(_Group):
     """The control subsystem (Table 3); what the paper leaves open is said so."""
 
-    synchronisation: Synchronisation = "msogi-fll"
+    synchronisation: SynchronisationName = "msogi-fll"
     sogi_gain: Positive = Field(default=2**0.5, description="K")
     fll_gain: NotNegative = Field(default=50.0, description="Gamma (1/s)")
     fll_frequency_min_hz: Positive = Field(default=40.0, description="guard of every synchronisation, not in the paper")

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pvlvrt_compliance.space_vectors import ROTATION_120, SQRT3_2, Sequences, fortescue
 
 Type = Literal["A", "B", "C", "D", "E", "F", "G"]
-Phases = Literal["abc", "a", "b", "c", "ab", "bc", "ca"]
+PhaseNames = Literal["abc", "a", "b", "c", "ab", "bc", "ca"]
 PAIRS = ("ab", "bc", "ca")
 
 # The healthy phases a, b, c are 1, a^2, a; the pair that an isolated two-phase sag pulls together leaves this one.
@@ -30,7 +30,7 @@ class Sag(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     depth: float = Field(ge=0, le=1, description="what is lost, 0 (no sag) to 1")
-    phases: Phases = "abc"
+    phases: PhaseNames = "abc"
     two_phase: bool = False
     type: Type | None = Field(default=None, description="of Bollen's classification, in place of two_phase")
     angle_deg: float = Field(default=0, ge=-180, le=180, description="that the phases named are turned ahead by")

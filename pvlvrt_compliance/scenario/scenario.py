@@ -4,15 +4,10 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from pvlvrt_compliance.scenario.events import Event
 from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.units import nearest_nominal_frequency
 
 FREQUENCY_MIN_HZ = 45.0
 FREQUENCY_MAX_HZ = 66.0
-_NOMINAL_FREQUENCIES_HZ = (50.0, 60.0)
-
-
-def nearest_nominal_frequency(frequency_hz: float) -> float:
-    """Return 50 or 60 Hz, whichever is nearer: the nominal frequency of a grid that runs at ``frequency_hz``."""
-    return min(_NOMINAL_FREQUENCIES_HZ, key=lambda nominal: abs(nominal - frequency_hz))
 
 
 class Scenario(BaseModel):

@@ -13,7 +13,7 @@ from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation import exchange
-from pvlvrt_compliance.simulation.doors.base import Door, DoorCall, Setting, port_table, real_block
+from pvlvrt_compliance.simulation.doors.base import Door, DoorCall, port_table, real_block
 from pvlvrt_compliance.simulation.electronics import delay_lines_of, hardware_of
 from pvlvrt_compliance.simulation.exchange import COMMANDS, SIGNALS, DoorTable
 from pvlvrt_compliance.simulation.foreign_loop import RECORDED, Timing, run_foreign
@@ -99,7 +99,7 @@ def run_through(
     start = steady_state(plant, tables.grid, controller, scenario, timing.first * period_s)
     calls = (int(plan.first[-1]) - timing.first) // timing.ratio + 1
     nominal = nominal_of(parameters, scenario)
-    opened = door.open(Setting(nominal, start.plant.v_dc))
+    opened = door.open(nominal)
     try:
         table = door_table(opened, nominal, controller.lvrt.Q_set)
         samples = np.empty((sum(plan.rows), len(RECORDED) + len(opened.recorded)))

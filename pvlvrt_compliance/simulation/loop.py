@@ -27,7 +27,7 @@ COMPLETED, NOT_FINITE = range(2)
 
 PLANT_CHANNELS = (
     *("u_a_v", "u_b_v", "u_c_v", "u0_a_v", "u0_b_v", "u0_c_v", "i_a_a", "i_b_a", "i_c_a"),
-    *("v_dc_v", "i_pv_a", "irradiance_w_m2", "connected"),
+    *("v_dc_v", "i_pv_a", "irradiance_w_m2", "connected", "trip_cause"),
 )
 """Channels that the plant gives, whichever controller runs it; the first columns of every record."""
 
@@ -61,15 +61,16 @@ def record_plant(row: NDArray[np.float64], x: PlantState, y: Observed, G: float)
     record_phases(row, 3, y.u0_ab, y.u_zero)
     record_phases(row, 6, x.i, 0.0)
     row[9], row[10], row[11], row[12] = x.v_dc, x.i_pv, 1000.0 * G, 1.0 if x.closed else 0.0
+    row[13] = float(x.trip)
 
 
 @kernel
 def record(row: NDArray[np.float64], x: PlantState, y: Observed, s: ControllerSignals, G: float) -> None:
     """Write one sample in the order of `CHANNELS`."""
     record_plant(row, x, y, G)
-    row[13], row[14], row[15], row[16] = s.V_fault, 1.0 if s.fault else 0.0, s.w / (2 * math.pi), s.v_ref
-    row[17], row[18] = s.P_ref, s.Q_ref
-    row[19], row[20], row[21], row[22] = s.i_ref.real, s.i_ref.imag, s.m.real, s.m.imag
+    row[14], row[15], row[16], row[17] = s.V_fault, 1.0 if s.fault else 0.0, s.w / (2 * math.pi), s.v_ref
+    row[18], row[19] = s.P_ref, s.Q_ref
+    row[20], row[21], row[22], row[23] = s.i_ref.real, s.i_ref.imag, s.m.real, s.m.imag
 
 
 @kernel

@@ -1,6 +1,7 @@
 """Calling a C function by its address from compiled code."""
 
 import ctypes
+from collections.abc import Callable
 from typing import Any
 
 import numba
@@ -10,6 +11,27 @@ from numba.extending import intrinsic
 
 FUNCTION = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p)
 """What is at the address: ``int32_t function(void *argument)``, 0 when all is well."""
+
+_FAILED = 2  # 1 is for what only has something to say
+
+
+def address_of(function: Any) -> int:
+    """Address of a function of C; 0 of None."""
+    return 0 if function is None else int(ctypes.cast(function, ctypes.c_void_p).value or 0)
+
+
+def guarded(do: Callable[[], None], tell: Callable[[str], None]) -> Callable[[Any], int]:
+    """Python to stand at an address: whatever is raised is told and counts as a failure."""
+
+    def call(_argument: Any) -> int:
+        try:
+            do()
+        except BaseException as error:
+            tell(str(error) or repr(error))
+            return _FAILED
+        return 0
+
+    return call
 
 
 @intrinsic

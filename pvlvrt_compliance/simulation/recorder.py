@@ -17,7 +17,7 @@ BEFORE_S, AFTER_S = 0.35, 1.5
 """Every control period is recorded this long before and after whatever happens (s), and this long before the end."""
 
 MOST_ROWS = 500_000
-"""Rows that a record is kept to, as far as `LEAST_RATE_HZ` allows: 23 channels of them are 0.09 GB."""
+"""Rows that a record is kept to, as far as `LEAST_RATE_HZ` allows: 24 channels of them are 0.10 GB."""
 
 THIN_RATE_HZ = 3000.0
 """Samples a second that are left elsewhere, at least ..."""
@@ -27,7 +27,7 @@ LEAST_RATE_HZ = 8.5 * 60.0
 
 _SHORTEST_THIN_S = 0.5  # a stretch of fewer samples that is shorter is not worth a change of step
 
-Stretch = tuple[float, float]
+Busy = tuple[float, float]
 """Begin and end (s)."""
 
 
@@ -49,7 +49,7 @@ def every_period(periods: int) -> RecordingPlan:
     return RecordingPlan(first=np.array([0, periods]), step=np.array([1]))
 
 
-def plan_of(busy: Iterable[Stretch], periods: int, T_reg: float) -> RecordingPlan:
+def plan_of(busy: Iterable[Busy], periods: int, T_reg: float) -> RecordingPlan:
     """Plan of a record in which something happens in some stretches of time.
 
     All rows lie on one grid: every stretch but the last begins and ends at multiples of the same N periods, so that
@@ -73,9 +73,9 @@ def plan_of(busy: Iterable[Stretch], periods: int, T_reg: float) -> RecordingPla
     return _plan([(begin, min(end, periods)) for begin, end in bounds], periods, N)
 
 
-def _joined(stretches: list[Stretch], end_s: float) -> list[Stretch]:
+def _joined(stretches: list[Busy], end_s: float) -> list[Busy]:
     """Stretches within the record in order of time, in one where they come near each other."""
-    found: list[Stretch] = []
+    found: list[Busy] = []
     inside = [(max(begin, 0.0), min(end, end_s)) for begin, end in stretches if begin < end_s and end > 0]
     for begin, end in sorted(inside):
         last_end = found[-1][1] if found else 0.0

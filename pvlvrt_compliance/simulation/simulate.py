@@ -16,7 +16,7 @@ from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import busy_stretches
 from pvlvrt_compliance.simulation.electronics import hardware_of
 from pvlvrt_compliance.simulation.loop import CHANNELS, COMPLETED, run
-from pvlvrt_compliance.simulation.recorder import RecordingPlan, Stretch, every_period, plan_of
+from pvlvrt_compliance.simulation.recorder import Busy, RecordingPlan, every_period, plan_of
 from pvlvrt_compliance.simulation.translate import (
     control_period_s,
     controller_params,
@@ -26,6 +26,7 @@ from pvlvrt_compliance.simulation.translate import (
     steady_state,
 )
 from pvlvrt_compliance.waveforms import Segment, Waveforms
+from pvlvrt_compliance.waveforms.breaker import opened_at_s
 
 _MOST_NOISE = 2**20  # control periods of sensor noise (43 s), after which it begins anew
 
@@ -84,19 +85,19 @@ def recorded(
     return make(plan_of([*busy, (opened_s, opened_s)], periods, T_reg))
 
 
-def _played(playback: PlaybackTable | None) -> list[Stretch]:
+def _played(playback: PlaybackTable | None) -> list[Busy]:
     """When a recording is played back, during which anything may happen."""
     return [] if playback is None else [(playback.t, playback.t + len(playback.u) * playback.dt)]
 
 
 def _opened_while_thin_s(waveforms: Waveforms) -> float | None:
     """First sample with the breaker open (s), where not every control period was recorded; None otherwise."""
+    opened_s = opened_at_s(waveforms)
+    if opened_s is None:
+        return None
     step = min(segment.dt_s for segment in waveforms)
-    for segment in waveforms:
-        if segment["connected"][-1] < 0.5:
-            opened_s = float(segment.t_s[(segment["connected"] < 0.5).argmax()])
-            return opened_s if segment.dt_s > 1.5 * step else None
-    return None
+    here = next(segment for segment in reversed(waveforms.segments) if segment.t0_s <= opened_s)
+    return opened_s if here.dt_s > 1.5 * step else None
 
 
 def _run(  # type: ignore[no-untyped-def]

@@ -25,7 +25,7 @@ from pvlvrt_compliance.plant.plant import PlantParams, PlantState, PlantTables
 from pvlvrt_compliance.plant.protection import NO_TRIP, ProtectionParams, UndervoltageCurve, relays_at_rest
 from pvlvrt_compliance.plant.pv_array import STC_IRRADIANCE, PvParams
 from pvlvrt_compliance.plant.switched_bridge import DeviceParams, PeriodMean
-from pvlvrt_compliance.scenario.parameters import ControllerParameters, Parameters, PowerStrategy, Synchronisation
+from pvlvrt_compliance.scenario.parameters import ControllerParameters, Parameters, PowerStrategy, SynchronisationName
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.surroundings import (
     grid_table,
@@ -49,7 +49,7 @@ _STRATEGIES: Mapping[PowerStrategy, int] = {
     "constant-q": current_references.CONSTANT_Q,
     "balanced": current_references.BALANCED,
 }
-_ALGORITHMS: Mapping[Synchronisation, int] = {
+_ALGORITHMS: Mapping[SynchronisationName, int] = {
     "msogi-fll": synchronisation.MSOGI_FLL,
     "dsogi-fll": synchronisation.DSOGI_FLL,
     "srf-pll": synchronisation.SRF_PLL,

@@ -3,17 +3,12 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import groupby, pairwise
 
-from pvlvrt_compliance.checks.repeated_runs import (
-    connection_status,
-    further_runs_wanted,
-    judge_repeated_runs,
-    let_off,
-    with_check,
-)
-from pvlvrt_compliance.checks.results import Status, TestResult
+from pvlvrt_compliance.checks.check import RowCheck
+from pvlvrt_compliance.checks.rows import connection_status, let_off, row_rule, with_check
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
-from pvlvrt_compliance.profile.requirements import RepeatedRuns
+from pvlvrt_compliance.profile.requirements import Requirement
+from pvlvrt_compliance.results import Status, TestResult
 from pvlvrt_compliance.study.run import Judged
 
 Run = tuple[TestCase, Judged]
@@ -22,7 +17,7 @@ Run = tuple[TestCase, Judged]
 def run_rows(profile: Profile, cases: Iterable[TestCase], judge_one: Callable[[TestCase], Judged]) -> Iterator[Run]:
     """Run tests in order, and where a profile asks for it, rows again.
 
-    The verdict ``repeated_runs`` stands with the last run of its row. A run that was not ridden through is held back
+    The verdict on a row stands with the last run of its row. A run that was not ridden through is held back
     until its row is decided, for the further runs may let it off; all others are handed out as soon as they are done.
 
     Parameters
@@ -39,13 +34,13 @@ def run_rows(profile: Profile, cases: Iterable[TestCase], judge_one: Callable[[T
     tuple of TestCase and Judged
         In the order of the runs.
     """
-    rule = profile.requirements.repeated_runs
+    rule = row_rule(profile)
     for row, group in groupby(cases, key=lambda case: case.row):
         runs = list(group)
-        if rule is None or not row or not runs[-1].judges("repeated_runs"):
+        if rule is None or not row or not runs[-1].judges(rule[0].kind):
             yield from ((case, judge_one(case)) for case in runs)
         else:
-            yield from _run_row(rule, runs, judge_one)
+            yield from _run_row(*rule, runs, judge_one)
 
 
 def further_cases(runs: Sequence[TestCase], count: int) -> list[TestCase]:
@@ -70,7 +65,9 @@ def points_between(angles_deg: Sequence[float], count: int) -> list[float]:
     return sorted(found)
 
 
-def _run_row(rule: RepeatedRuns, cases: list[TestCase], judge_one: Callable[[TestCase], Judged]) -> Iterator[Run]:
+def _run_row(
+    check: RowCheck, rule: Requirement, cases: list[TestCase], judge_one: Callable[[TestCase], Judged]
+) -> Iterator[Run]:
     own: list[TestResult] = []
     further: list[TestResult] = []
     pending: list[Run] = []
@@ -80,16 +77,16 @@ def _run_row(rule: RepeatedRuns, cases: list[TestCase], judge_one: Callable[[Tes
             pending.clear()
         pending.append((case, judge_one(case)))
         own.append(pending[-1][1].result)
-    for case in further_cases(cases, further_runs_wanted(rule, own)):
-        if further_runs_wanted(rule, own, further):
+    for case in further_cases(cases, check.further_runs_wanted(rule, own)):
+        if check.further_runs_wanted(rule, own, further):
             pending.append((case, judge_one(case)))
             further.append(pending[-1][1].result)
-    check = judge_repeated_runs(rule, own, further)
-    if further and check.status is Status.PASS:
-        pending = [(case, judged._replace(result=let_off(judged.result))) for case, judged in pending]
+    verdict = check.judge_row(rule, own, further)
+    if further and verdict.status is Status.PASS:
+        pending = [(case, judged._replace(result=let_off(judged.result, check.kind))) for case, judged in pending]
     last_case, last = pending.pop()
     yield from pending
-    yield last_case, last._replace(result=with_check(last.result, check))
+    yield last_case, last._replace(result=with_check(last.result, verdict))
 
 
 def _at(case: TestCase, angle_deg: float, number: int) -> TestCase:

@@ -1,13 +1,13 @@
 """Running tests: from a profile's test to a judged record."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from typing import NamedTuple
 
 from pvlvrt_compliance.checks.evaluate import errored, evaluate
-from pvlvrt_compliance.checks.results import TestResult
 from pvlvrt_compliance.errors import PvlvrtError
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
+from pvlvrt_compliance.results import TestResult
 from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.simulate import available_power_w, simulate
@@ -36,11 +36,3 @@ def run_test(profile: Profile, test: TestCase, parameters: Parameters, simulator
         return Judged(errored(profile, test, str(error)), None)
     nominal = nominal_of(parameters, test.scenario)
     return Judged(evaluate(profile, test, waveforms, nominal, available_w), waveforms)
-
-
-def run_tests(
-    profile: Profile, tests: Iterable[TestCase], parameters: Parameters, simulator: Simulator = simulate
-) -> Iterator[Judged]:
-    """Run tests one after the other, each judged as soon as it has run; records are not kept."""
-    for test in tests:
-        yield run_test(profile, test, parameters, simulator)

@@ -2,17 +2,17 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 import pytest
 
 from pvlvrt_compliance.checks.evaluate import evaluate
-from pvlvrt_compliance.checks.results import Check, TestResult
+from pvlvrt_compliance.data.marks import Number
 from pvlvrt_compliance.profile import Profile, TestCase, load_profile
 from pvlvrt_compliance.profile.procedure import Detection
-from pvlvrt_compliance.profile.provenance import Number
-from pvlvrt_compliance.profile.requirements import Requirement, Requirements
+from pvlvrt_compliance.profile.requirements import BUILT_IN, Requirement, requirements_of
+from pvlvrt_compliance.results import TestResult, Verdict
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.timeline import entries
 from pvlvrt_compliance.space_vectors import fortescue, phases
@@ -97,7 +97,7 @@ class Bench:
         """Judge the record."""
         return evaluate(self.profile, self.test, self.waveforms(), self.nominal, self.available_power_w)
 
-    def check(self, kind: str) -> Check:
+    def check(self, kind: str) -> Verdict:
         """Judge the record and pick one verdict."""
         return next(check for check in self.result().checks if check.check == kind)
 
@@ -164,8 +164,7 @@ def chosen(value: Any, name: str = "value") -> dict[str, Any]:
 
 def marked(kind: str, **numbers: Any) -> Requirement:
     """A requirement of a kind; numbers and words get a mark, tables and models are taken as they are."""
-    annotation = Requirements.model_fields[kind].annotation
-    model = next(t for t in get_args(annotation) if t is not type(None))
+    model = BUILT_IN[kind]
     plain = {name: x if isinstance(x, dict) else chosen(x) for name, x in numbers.items()}
     return model.model_validate({"clause": "a clause", "source": "the test"} | plain)
 
@@ -178,7 +177,7 @@ def demanding(iec: Profile) -> Callable[..., Profile]:
     """
 
     def make(detection: dict[str, float] | None = None, tolerance_pu: float = 0.05, **kinds: dict[str, Any]) -> Profile:
-        requirements = Requirements(**{kind: marked(kind, **numbers) for kind, numbers in kinds.items()})
+        requirements = requirements_of(BUILT_IN)(**{kind: marked(kind, **numbers) for kind, numbers in kinds.items()})
         conditions = iec.conditions.model_copy(update={"no_load_tolerance_pu": Number(**chosen(tolerance_pu))})
         thresholds = detection and Detection(**{name: Number(**chosen(x)) for name, x in detection.items()})
         return iec.model_copy(update={"requirements": requirements, "conditions": conditions, "detection": thresholds})
@@ -223,6 +222,6 @@ def profile_with(spain: Profile) -> Callable[[str, dict[str, Any]], Profile]:
 
     def make(kind: str, requirement: dict[str, Any]) -> Profile:
         whole = spain.model_dump(by_alias=True) | {"requirements": {kind: _marked(requirement)}, "tests": ()}
-        return Profile.model_validate(whole)
+        return type(spain).model_validate(whole)
 
     return make

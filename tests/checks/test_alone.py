@@ -6,10 +6,11 @@ from pathlib import Path
 import pytest
 
 from pvlvrt_compliance.checks.alone import judge_alone
-from pvlvrt_compliance.checks.evidence import NotApplicable
 from pvlvrt_compliance.checks.judging import judge_safely
-from pvlvrt_compliance.checks.results import Status
+from pvlvrt_compliance.checks.registry import FunctionCheck
 from pvlvrt_compliance.errors import MeasurementError
+from pvlvrt_compliance.evidence.evidence import NotApplicable
+from pvlvrt_compliance.results import Status
 
 CONTRIBUTING = Path(__file__).parents[2] / "CONTRIBUTING.md"
 
@@ -52,7 +53,8 @@ def test_whatever_a_judge_raises_is_a_verdict(bench, iec, raised, status, messag
 
 def test_judge_that_returns_no_verdict(iec):
     """A judge that forgets to return its verdict is an error."""
-    check = judge_safely("mine", lambda _requirement, _evidence: None, iec.requirements.dc_ripple, None)
+    mine = FunctionCheck("mine", lambda _requirement, _evidence: None)
+    check = judge_safely(mine, iec.requirements.dc_ripple, None)
     assert check.status is Status.ERROR
     assert "NoneType" in check.message
 
@@ -65,7 +67,7 @@ def test_interruption_is_not_a_verdict(iec, exception):
         raise exception
 
     with pytest.raises(exception):
-        judge_safely("mine", interrupted, iec.requirements.dc_ripple, None)
+        judge_safely(FunctionCheck("mine", interrupted), iec.requirements.dc_ripple, None)
 
 
 def test_example_in_contributing():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pvlvrt_compliance.checks.results import Status
+from pvlvrt_compliance.results import Status
 from pvlvrt_compliance.waveforms.container import Segment, Waveforms
 
 

@@ -41,7 +41,7 @@ def test_sag_by_type_beyond_a_transformer(command, reports, tmp_path):
     ("text", "says"),
     [
         ("[[events]]\nkind = 'jump'\n", "events[0]"),
-        ("[[events]]\nkind = 'phase_jump'\nt_s = 0\n", "events[0].phase_jump.angle_deg: Field required"),
+        ("[[events]]\nkind = 'phase_jump'\nt_s = 0\n", "events.toml:1: events[0].angle_deg: missing"),
         ("events = 3\n", "events: "),
         ("[[events\n", "not TOML"),
     ],

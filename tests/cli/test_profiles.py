@@ -10,8 +10,8 @@ import xml.etree.ElementTree as ET
 import jsonschema
 import pytest
 
+from pvlvrt_compliance.data.marks import marks_in
 from pvlvrt_compliance.profile import known_profiles, load_profile
-from pvlvrt_compliance.profile.provenance import marks_in
 
 COMMANDS = ("list", "show", "plot", "check", "schema", "new")
 SHIPPED = [name for name, known in known_profiles().items() if known.origin == "shipped"]

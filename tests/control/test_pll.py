@@ -81,6 +81,7 @@ def _delayed(line, k, samples):
     return dsc_pll.delayed(line, k, samples)
 
 
+@pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="no number is an index only when compiled")
 @pytest.mark.parametrize("samples", [math.nan, math.inf, -math.inf, -5.0, 0.0, 1e9])
 @pytest.mark.parametrize("k", [0, 154])
 def test_no_delay_reads_outside_the_line(k, samples):

@@ -89,9 +89,13 @@ def inferred(function: Any) -> Iterator[tuple[str, str]]:
             yield from ((f"{function.__name__}: {name}", str(kind)) for name, kind in part.items())
 
 
+# Without a compiler there is no code to look into.
+needs_compiled_code = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="looks into compiled code")
+
 MEASURED = Measured(u_g_ab=398 + 0j, i_ab=1250 + 0j, v_dc=800.0, i_pv=600.0)
 
 
+@needs_compiled_code
 @pytest.mark.parametrize("algorithm", ALGORITHMS)
 def test_nothing_computes_with_64_bits(algorithm):
     """Neither a variable, nor a call, nor an instruction of the compiled controller has 64-bit numbers.
@@ -106,6 +110,7 @@ def test_nothing_computes_with_64_bits(algorithm):
     assert [entry for entry in found if WIDE.search(entry[1])] == []
 
 
+@needs_compiled_code
 def test_64_bits_would_be_seen():
     """The same search finds them in the controller of double precision."""
     made = llvm_of(controller_step, MEASURED, controller())
@@ -113,6 +118,7 @@ def test_64_bits_would_be_seen():
     assert any(WIDE.search(kind) for kernel in kernels_of(controller_step) for _, kind in inferred(kernel))
 
 
+@needs_compiled_code
 def test_every_strategy_and_block_is_looked_at():
     """Every block of the controller has its counterpart of single precision."""
     names = {kernel.__name__ for kernel in kernels_of(controller_step)}

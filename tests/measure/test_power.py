@@ -11,7 +11,7 @@ from pvlvrt_compliance.measure.power import (
     sequence_current,
     sequence_powers,
 )
-from pvlvrt_compliance.measure.sequences import SequencePhasors
+from pvlvrt_compliance.space_vectors import Sequences
 
 phasors = st.complex_numbers(max_magnitude=400)
 
@@ -47,7 +47,7 @@ def test_balanced_power_is_constant(three_phase, segment):
 
 def sequences(positive, negative):
     """Sequence phasors of one sample."""
-    return SequencePhasors(*(np.array([x], dtype=complex) for x in (positive, negative, 0)))
+    return Sequences(*(np.array([x], dtype=complex) for x in (positive, negative, 0)))
 
 
 @given(phasors, phasors, phasors, phasors)

@@ -5,10 +5,10 @@ from hypothesis import strategies as st
 
 from draws import draws
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.measure.response import Band, step_response
+from pvlvrt_compliance.measure.response import Tolerance, step_response
 
 T_S = np.arange(-0.1, 1.0, 1e-4)
-TEN = Band(short=0.1, beyond=0.1)
+TEN = Tolerance(short=0.1, beyond=0.1)
 levels = st.floats(-5, 5)
 
 
@@ -31,7 +31,7 @@ def test_the_overshoot_of_a_second_order_lag(damping):
     w = 100.0
     wd, t = w * np.sqrt(1 - damping**2), np.maximum(T_S, 0)
     x = 1 - np.exp(-damping * w * t) * (np.cos(wd * t) + damping * w / wd * np.sin(wd * t))
-    found = step_response(T_S, x, 0.0, 0.0, 1.0, Band(0.05, 0.05))
+    found = step_response(T_S, x, 0.0, 0.0, 1.0, Tolerance(0.05, 0.05))
     assert found.overshoot == pytest.approx(np.exp(-np.pi * damping / np.sqrt(1 - damping**2)), abs=1e-5)
     after = found.settling_s + 1e-4 < T_S
     assert np.abs(x[after] - 1).max() <= 0.05
@@ -42,9 +42,9 @@ def test_the_band_may_be_asymmetric():
     """What stays 15 % beyond is settled in a band of +20 / -10 % and never in one of +10 / -20 %, up and down."""
     for sign in (1, -1):
         x = sign * np.where(T_S < 0.02, 0, 1.15)
-        assert step_response(T_S, x, 0.0, 0.0, sign, Band(0.1, 0.2)).settling_s == pytest.approx(0.02, abs=1e-4)
-        assert step_response(T_S, x, 0.0, 0.0, sign, Band(0.2, 0.1)).settling_s is None
-        assert step_response(T_S, x, 0.0, 0.0, sign, Band(0.1, 0.2)).overshoot == pytest.approx(0.15)
+        assert step_response(T_S, x, 0.0, 0.0, sign, Tolerance(0.1, 0.2)).settling_s == pytest.approx(0.02, abs=1e-4)
+        assert step_response(T_S, x, 0.0, 0.0, sign, Tolerance(0.2, 0.1)).settling_s is None
+        assert step_response(T_S, x, 0.0, 0.0, sign, Tolerance(0.1, 0.2)).overshoot == pytest.approx(0.15)
 
 
 def test_what_never_gets_there():
@@ -77,4 +77,4 @@ def test_what_cannot_be_measured():
     with pytest.raises(MeasurementError, match="not finite"):
         step_response(T_S, np.where(T_S > 0.5, np.nan, 0), 0.0, 0.0, 1.0, TEN)
     with pytest.raises(MeasurementError, match="no width"):
-        step_response(T_S, T_S, 0.0, 0.0, 1.0, Band(0, 0))
+        step_response(T_S, T_S, 0.0, 0.0, 1.0, Tolerance(0, 0))

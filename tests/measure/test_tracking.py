@@ -250,3 +250,10 @@ def test_the_figures_of_the_page_with_noise(dt_s):
     off = tracked_frequency(noisy, 50) - 49.3
     assert np.nanmax(np.abs(off)) < 0.013
     assert np.nanstd(off) < 0.004
+
+
+def test_windows_go_by_a_frequency_above_the_floor_that_is_given(dt_s):
+    """A voltage under the floor steers nothing: windows then go by the nominal frequency."""
+    faint = record(voltages(dt_s * np.arange(4000), 49, (2.0, 0, 0), {}), dt_s)
+    assert steering_frequency(faint, "u", 50, floor=1.0)[0][-1] == pytest.approx(49, abs=1e-3)
+    assert steering_frequency(faint, "u", 50, floor=3.0)[0][-1] == 50

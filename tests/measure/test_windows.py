@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pvlvrt_compliance.measure.windows import Span, WindowRules, Windows, standard_windows
+from pvlvrt_compliance.measure.windows import Span, WindowRules, Windows, standard_windows, stretch_window
 
 
 def test_the_windows_of_the_main_job():
@@ -59,3 +59,19 @@ def test_a_profile_states_other_windows():
     assert windows.before == pytest.approx((0.18, 0.28))
     assert windows.during == pytest.approx((0.36, 0.48))
     assert windows.after == pytest.approx((0.8, 0.9))
+
+
+@pytest.mark.parametrize(
+    ("lasts_s", "expected"),
+    [
+        (0.5, (0.10, 0.48)),  # as `during` in a sag
+        (0.145, (0.105, 0.125)),  # one cycle of it
+        (0.1, (0.02, 0.1)),  # all that is settled
+        (0.0225, (0.0025, 0.0225)),  # one cycle, over 1.1 cycles after the step
+        (0.0215, None),
+    ],
+)
+def test_window_of_a_stretch(lasts_s, expected):
+    """A stretch is measured as a sag is; a short one in all its whole settled cycles, or not at all."""
+    found = stretch_window(1.0, 1.0 + lasts_s, 50.0, 1.1)
+    assert found == (None if expected is None else pytest.approx([1.0 + t for t in expected]))

@@ -1,11 +1,13 @@
 import cmath
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.plant import grid
+from pvlvrt_compliance.plant import plant as plant_module
 from pvlvrt_compliance.scenario.sag import Sag
 
 U = math.sqrt(3) * 230
@@ -50,3 +52,47 @@ def test_phases_of_the_source_are_those_of_the_sag(source, plant, sag, angle):
     zero = source["zero_sequence"](x)
     found = [(along * cmath.exp(-2j * math.pi * k / 3)).real + zero for k in range(3)]
     assert found == pytest.approx(expected, abs=1e-6)
+
+
+@given(st.integers(-50, 50), st.floats(-7, 7))
+def test_a_power_of_the_turning_is_that_many_times_the_angle(in_python, order, theta):
+    """exp(j order theta) by squaring."""
+    assert in_python(grid.power_of)(cmath.rect(1, theta), order) == pytest.approx(
+        cmath.rect(1, order * theta), abs=1e-12
+    )
+
+
+@pytest.mark.parametrize("t", [0.99, 1.0, 1.0004, 1.00199, 1.0021])
+def test_a_recording_takes_the_place_of_the_source_while_it_lasts(in_python, t):
+    """Between its samples it runs along straight lines; before and after it, the source is what it was."""
+    u = np.array([1 + 1j, 3 - 1j, 2 + 0j])
+    table = grid.PlaybackTable(t=1.0, dt=1e-3, u=u, u_zero=u.real)
+    at = 1.0 + 1e-3 * np.arange(3)
+    lasts = 1.0 <= t < 1.002
+    found, zero = (
+        in_python(plant_module.or_playback)(7j, t, table),
+        in_python(plant_module.zero_or_playback)(7.0, t, table),
+    )
+    assert found == pytest.approx(np.interp(t, at, u.real) + 1j * np.interp(t, at, u.imag) if lasts else 7j)
+    assert zero == pytest.approx(np.interp(t, at, u.real) if lasts else 7.0)
+    assert in_python(plant_module.or_playback)(7j, t, None) == 7j
+
+
+@pytest.mark.parametrize(("t", "held"), [(0.9, 0), (1.0, 1), (1.5, 1), (2.0, 0)])
+def test_harmonics_turn_with_the_fundamental(in_python, source, plant, t, held):
+    """The fifth turns backwards five times as fast, the third stands in the zero sequence; each while it lasts."""
+    _, tables = plant()
+    at = source["source_at"](t, 0, tables.grid)
+    harmonics = grid.HarmonicTable(
+        order=np.array([-5, 3]),
+        u=np.array([10 + 0j, 0j]),
+        u_zero=np.array([0j, 4 + 0j]),
+        t_on=np.array([1.0, 1.0]),
+        t_off=np.array([2.0, 2.0]),
+    )
+    theta = cmath.phase(at.turn)
+    e = in_python(plant_module.with_harmonics)(100 + 0j, at, t, harmonics)
+    zero = in_python(plant_module.zero_with_harmonics)(1.0, at, t, harmonics)
+    assert e == pytest.approx(100 + held * cmath.rect(10, -5 * theta))
+    assert zero == pytest.approx(1.0 + held * 4 * math.cos(3 * theta))
+    assert in_python(plant_module.with_harmonics)(100 + 0j, at, t, None) == 100

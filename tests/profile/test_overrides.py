@@ -7,9 +7,9 @@ import types
 
 import pytest
 
+from pvlvrt_compliance.data.search_path import ENTRY_POINT_GROUP, find_profile
 from pvlvrt_compliance.errors import ProfileError, UsageError
 from pvlvrt_compliance.profile import known_profiles, load_profile
-from pvlvrt_compliance.profile.search_path import ENTRY_POINT_GROUP, find_profile
 
 MARK = 'confidence = "chosen"\nsource = "a test"\n'
 ROW = '[[tests]]\nid = "{}"\nclause = "c"\nduration_s = 0.5\npowers = ["full"]\nsag = {{ depth = 0.5 }}\n' + MARK
@@ -117,7 +117,7 @@ def entry_point(monkeypatch):
         monkeypatch.setitem(sys.modules, module.__name__, module)
         entry = importlib.metadata.EntryPoint("company", f"{module.__name__}:announced", ENTRY_POINT_GROUP)
         monkeypatch.setattr(
-            "pvlvrt_compliance.profile.search_path.entry_points", lambda group: [entry] * (group == ENTRY_POINT_GROUP)
+            "pvlvrt_compliance.data.search_path.entry_points", lambda group: [entry] * (group == ENTRY_POINT_GROUP)
         )
 
     return announce

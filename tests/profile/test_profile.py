@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pvlvrt_compliance.data.marks import CONFIDENCES, weakest
 from pvlvrt_compliance.errors import ProfileError, UsageError
 from pvlvrt_compliance.profile import Profile, load_profile
-from pvlvrt_compliance.profile.provenance import CONFIDENCES, weakest
 from pvlvrt_compliance.scenario.sag import Sag
 
 
@@ -205,3 +205,20 @@ def test_steps_of_some_phases_only_sag(tmp_path):
     file.write_text(STEPS.replace("PHASES", "a"))
     with pytest.raises(ProfileError, match=r"steps\.phases: a step to 1\.2 pu must be of all phases"):
         load_profile(str(file))
+
+
+def test_thresholds_are_marked_numbers_that_a_profile_may_state(tmp_path):
+    """What decides whether something is judged carries a mark and a reason, is told, and can be another."""
+    usual = load_profile("iec61400-21").thresholds
+    assert all(number.confidence == "chosen" and number.source for _, number in usual)
+    file = tmp_path / "mine.toml"
+    file.write_text(
+        'schema_version = 1\nid = "mine"\ntitle = "mine"\ninclude = ["iec61400-21"]\n[thresholds]\n'
+        'normal_low_pu = { value = 0.85, confidence = "confirmed", source = "a text" }\n'
+    )
+    mine = load_profile(str(file))
+    assert mine.thresholds.normal_low_pu.value == 0.85
+    assert mine.thresholds.normal_high_pu == usual.normal_high_pu
+    assert mine.digest != load_profile("iec61400-21").digest
+    assert any(note.startswith("thresholds normal_high_pu: chosen") for note in mine.unverified())
+    assert not any(note.startswith("thresholds normal_low_pu") for note in mine.unverified())

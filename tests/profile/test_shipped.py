@@ -2,7 +2,7 @@
 
 import pytest
 
-from pvlvrt_compliance.profile.provenance import VERIFIED, marks_in
+from pvlvrt_compliance.data.marks import VERIFIED, marks_in
 
 RUNS = {
     "dk-rfg": 80,

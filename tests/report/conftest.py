@@ -6,9 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pvlvrt_compliance.checks.results import Check, ProfileSummary, Results, Status, TestResult, conclude
+from pvlvrt_compliance.disturbance.asked import disturbance_asked
+from pvlvrt_compliance.disturbance.model import NormalVoltage
+from pvlvrt_compliance.measure.quantities import MeasuredWindows
 from pvlvrt_compliance.measure.summary import measure
 from pvlvrt_compliance.report import figure
+from pvlvrt_compliance.results import Band, ProfileSummary, Results, Status, TestResult, Verdict, conclude
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.space_vectors import fortescue, phases
@@ -17,7 +20,7 @@ from pvlvrt_compliance.waveforms.container import Segment, Waveforms
 
 DT_S = 40.9568e-6
 ENVELOPE = ((0.0, 0.0), (0.15, 0.0), (1.5, 0.85))
-LIMITS = {"current_fundamental_pu": 1.02, "current_peak_pu": 2.0}
+NORMAL = NormalVoltage(low_pu=0.9, high_pu=1.1, negative_pu=0.1)
 
 
 def _synthetic_record(scenario: Scenario, nominal: Nominal, opens_s: float | None = None) -> Waveforms:
@@ -73,7 +76,7 @@ def record(scenario: Scenario, make_record: Callable[..., Waveforms]) -> Wavefor
     return make_record(scenario)
 
 
-def _checks(reactive: Status) -> tuple[Check, ...]:
+def _checks(reactive: Status) -> tuple[Verdict, ...]:
     margin = 75.0 if reactive is Status.PASS else -4.2
     short = "mean reactive power 156.5 kvar is 4.2 kvar below the curve at 0.700 pu"
     rows: tuple[dict[str, Any], ...] = (
@@ -87,7 +90,35 @@ def _checks(reactive: Status) -> tuple[Check, ...]:
         | {"message": "the window during the sag is shorter than one cycle [& a half]"},
     )
     statuses = (Status.PASS, Status.PASS, reactive, Status.NOT_APPLICABLE)
-    return tuple(Check(status=status, **row) for status, row in zip(statuses, rows, strict=True))
+    return tuple(Verdict(status=status, **row) for status, row in zip(statuses, rows, strict=True))
+
+
+def _bands(scenario: Scenario, measurements: MeasuredWindows) -> tuple[Band, ...]:
+    """The envelope from the start on, both limits of the current, and what is demanded of Q in the window."""
+    whole, during = (0.0, scenario.end_s), measurements.during
+    t, level = zip(*ENVELOPE, (scenario.end_s - scenario.start_s, ENVELOPE[-1][1]), strict=True)
+    since_start = tuple(scenario.start_s + x for x in t)
+    limits = [("limit, fundamental", 1.02), ("limit, peak", 2.0)]
+    return (
+        Band(
+            check="ride_through",
+            quantity="voltage_positive_pu",
+            name="ride-through envelope",
+            t_s=since_start,
+            lower=level,
+        ),
+        *(
+            Band(check="current_limit", quantity="current_pu", name=name, t_s=whole, lower=(-x, -x), upper=(x, x))
+            for name, x in limits
+        ),
+        Band(
+            check="reactive_support",
+            quantity="reactive_power_kvar",
+            name="limit of Q",
+            t_s=(during.start_s, during.end_s),
+            lower=(160.7, 160.7),
+        ),
+    )
 
 
 @pytest.fixture(scope="session")
@@ -100,7 +131,9 @@ def make_test(record: Waveforms, scenario: Scenario, nominal: Nominal) -> Callab
             "profile": "iec61400-21",
             "title": f"{scenario.sag.describe()}, {scenario.duration_s} s",
             "scenario": scenario.model_dump(mode="json"),
+            "disturbance": disturbance_asked(scenario, NORMAL),
             "checks": _checks(reactive),
+            "bands": _bands(scenario, measurements),
             "measurements": measurements,
             "clause": "8.5.2",
             "confidence": "memory",
@@ -143,4 +176,4 @@ def make_results() -> Callable[..., Results]:
 @pytest.fixture(scope="session")
 def make_figure(record: Waveforms, nominal: Nominal) -> Callable[[TestResult], dict[str, Any]]:
     """Make the figure of a test from the common record."""
-    return lambda test: figure.test_figure(record, test, nominal, ENVELOPE, LIMITS)
+    return lambda test: figure.test_figure(record, test, nominal)

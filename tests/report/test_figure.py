@@ -5,12 +5,17 @@ import json
 import numpy as np
 import pytest
 
+from pvlvrt_compliance.disturbance.asked import disturbance_asked
+from pvlvrt_compliance.disturbance.model import NormalVoltage
+from pvlvrt_compliance.measure.quantities import MeasuredWindows
 from pvlvrt_compliance.report import figure
+from pvlvrt_compliance.results import Band
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.waveforms.container import Segment, Waveforms
 
 ENVELOPE = ((0.0, 0.0), (0.15, 0.0), (1.5, 0.85))
+NORMAL = NormalVoltage(low_pu=0.9, high_pu=1.1, negative_pu=0.1)
 
 
 @pytest.fixture(scope="module")
@@ -93,7 +98,7 @@ def test_missing_channels_leave_their_panel_out(record, make_test, nominal):
     """A recording of voltages alone is drawn without currents, powers and DC voltage."""
     only = {name: x for name, x in record.segments[0].channels.items() if name.startswith("u_")}
     segment = record.segments[0]
-    drawn = figure.test_figure(Waveforms((Segment(segment.t0_s, segment.dt_s, only),)), make_test(), nominal, ENVELOPE)
+    drawn = figure.test_figure(Waveforms((Segment(segment.t0_s, segment.dt_s, only),)), make_test(), nominal)
     titles = [note["text"] for note in drawn["layout"]["annotations"] if note["text"].startswith("<b>")]
     assert titles == ["<b>Phase-to-neutral voltages</b>", "<b>Sequence voltages, one cycle</b>"]
 
@@ -127,10 +132,31 @@ def test_sequence_voltages_go_on_across_a_change_of_step(record, make_test, nomi
     assert second["x0"] == pytest.approx(_points(first)[0][-1], abs=2e-3)
 
 
-def test_no_sag_is_drawn_without_marks(make_record, make_test, nominal):
-    """A run without a sag has neither band nor envelope."""
+def test_where_nothing_happens_nothing_is_marked(make_record, make_test, nominal):
+    """A run in which the grid stands still has neither lines nor shading nor zoom buttons but the whole record."""
     scenario = Scenario(sag=Sag(depth=0), duration_s=0.3)
-    test = make_test(scenario=scenario.model_dump(mode="json"))
-    drawn = figure.test_figure(make_record(scenario), test, nominal, ENVELOPE)
-    assert not [s for s in drawn["layout"]["shapes"] if s["type"] == "line"]
+    test = make_test(disturbance=disturbance_asked(scenario, NORMAL), measurements=MeasuredWindows(), bands=())
+    drawn = figure.test_figure(make_record(scenario), test, nominal)
+    assert not drawn["layout"]["shapes"]
+    assert [button["label"] for button in drawn["layout"]["updatemenus"][0]["buttons"]] == ["whole record"]
     assert "ride-through envelope" not in {trace["name"] for trace in drawn["data"]}
+
+
+def test_a_jump_of_the_angle_is_marked(make_record, make_test, nominal):
+    """What is no sag has its marks, its words and its zoom buttons, too."""
+    scenario = Scenario(sag=Sag(depth=0), duration_s=0.3, events=[{"kind": "phase_jump", "t_s": 0.1, "angle_deg": 20}])
+    test = make_test(disturbance=disturbance_asked(scenario, NORMAL), measurements=MeasuredWindows())
+    drawn = figure.test_figure(make_record(scenario), test, nominal)
+    assert [s["x0"] for s in drawn["layout"]["shapes"] if s["type"] == "line"] == pytest.approx([0.4])
+    assert any(note["text"] == "start 0.400 s (angle)" for note in drawn["layout"]["annotations"])
+    assert [button["label"] for button in drawn["layout"]["updatemenus"][0]["buttons"]] == ["whole record", "start"]
+
+
+def test_a_band_of_another_check_is_drawn(record, make_test, nominal):
+    """A figure draws what any check gives, by what it limits and not by the check's name."""
+    band = Band(
+        check="mine", quantity="dc_voltage_v", name="my limit", t_s=(0.0, 1.0), lower=(700, 700), upper=(900, 950)
+    )
+    line = _named(figure.test_figure(record, make_test(bands=(band,)), nominal), "my limit")
+    assert line["x"] == [0.0, 1.0, 1.0, 1.0, 0.0]
+    assert line["y"] == [900, 950, None, 700, 700]

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pvlvrt_compliance.checks.results import Check, Status
 from pvlvrt_compliance.report import format as spell
+from pvlvrt_compliance.results import Status, Verdict
 
 finite = st.floats(-1e9, 1e9, allow_nan=False)
 units = st.sampled_from(["", "kvar", "pu", "%", "s", "furlong"])
@@ -23,7 +23,7 @@ def test_a_number_reads_back_close_to_its_value(value, unit):
 @given(limit=st.floats(0.01, 1e4), margin=st.floats(1e-8, 1).map(lambda x: -x) | st.floats(1e-8, 1))
 def test_a_margin_never_reads_as_zero(limit, margin):
     """A verdict that fails by little still shows by how much, in all three numbers alike."""
-    check = Check(check="x", status=Status.FAIL, measured=limit - margin, limit=limit, margin=margin, unit="pu")
+    check = Verdict(check="x", status=Status.FAIL, measured=limit - margin, limit=limit, margin=margin, unit="pu")
     numbers = spell.row(check)
     assert math.copysign(1, float(numbers.margin.removesuffix(" pu"))) == math.copysign(1, margin)
     assert float(numbers.margin.removesuffix(" pu")) != 0
@@ -33,7 +33,7 @@ def test_a_margin_never_reads_as_zero(limit, margin):
 
 def test_nothing_measured_is_nothing_written():
     """Absent numbers are empty cells, not the word None."""
-    assert spell.row(Check(check="x", status=Status.NOT_APPLICABLE)) == ("", "", "")
+    assert spell.row(Verdict(check="x", status=Status.NOT_APPLICABLE)) == ("", "", "")
 
 
 @pytest.mark.parametrize(

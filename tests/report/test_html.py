@@ -5,8 +5,8 @@ import re
 import lxml.html
 import pytest
 
-from pvlvrt_compliance.checks.results import Check, Status
 from pvlvrt_compliance.report import html
+from pvlvrt_compliance.results import Status, Verdict
 
 
 @pytest.fixture(scope="module")
@@ -99,7 +99,7 @@ def test_text_is_text(make_test, make_results, make_figure):
     """Whatever a name or message holds, it can neither become markup nor end a script."""
     evil = "</script><script>alert(1)</script><b>&"
     checks = (
-        Check(check=evil, status=Status.FAIL, message=evil, clause=evil, confidence=evil, unit=evil, measured=1.0),
+        Verdict(check=evil, status=Status.FAIL, message=evil, clause=evil, confidence=evil, unit=evil, measured=1.0),
     )
     test = make_test(evil, checks=checks, title=evil, scenario={evil: evil})
     figure = make_figure(make_test()) | {"note": evil}

@@ -6,14 +6,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
-from pvlvrt_compliance.checks.results import Check, Status, TestResult, conclude, worst
 from pvlvrt_compliance.report import junit
+from pvlvrt_compliance.results import Status, TestResult, Verdict, conclude, worst
 
 SCHEMA = etree.XMLSchema(etree.parse(Path(__file__).parents[1] / "schemas" / "junit-10.xsd"))
 
 texts = st.text(max_size=30)
 checks = st.builds(
-    Check,
+    Verdict,
     check=texts,
     status=st.sampled_from(Status),
     measured=st.none() | st.floats(allow_nan=False, allow_infinity=False),
@@ -63,7 +63,7 @@ def test_names_and_outcomes(make_test, make_results):
 )
 def test_characters_that_xml_cannot_hold_are_replaced(given_text, read):
     """A message with control characters still is a readable file."""
-    check = Check.model_construct(
+    check = Verdict.model_construct(
         check="x",
         status=Status.FAIL,
         message=given_text,

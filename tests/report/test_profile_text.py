@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from draws import draws
-from pvlvrt_compliance.checks.results import ProfileSummary
 from pvlvrt_compliance.profile import load_profile
 from pvlvrt_compliance.report import html
 from pvlvrt_compliance.report.profile_figure import render_html, render_svg
 from pvlvrt_compliance.report.profile_words import render as render_words
+from pvlvrt_compliance.results import ProfileSummary
 
 # All that a profile may hold: no control characters. Blanks are left to the layout.
 TEXTS = st.text(st.characters(exclude_categories=["Cs", "Cc", "Cn", "Z"]), min_size=1, max_size=40) | st.sampled_from(

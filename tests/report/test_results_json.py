@@ -4,8 +4,8 @@ import xml.etree.ElementTree as ET
 import lxml.html
 import pytest
 
-from pvlvrt_compliance.checks.results import Check, Results, Status, TestResult, conclude
 from pvlvrt_compliance.report import html, junit, results_json
+from pvlvrt_compliance.results import Results, Status, TestResult, Verdict, conclude
 
 
 def test_reading_it_back_gives_the_same_results(make_test, make_results):
@@ -30,7 +30,7 @@ def test_schema_names_every_key(make_test, make_results):
     assert schema["$schema"].endswith("2020-12/schema")
     assert set(schema["properties"]) == set(Results.model_fields)
     definitions = schema["$defs"]
-    assert set(definitions["Check"]["properties"]) == set(Check.model_fields)
+    assert set(definitions["Verdict"]["properties"]) == set(Verdict.model_fields)
     found = json.loads(results_json.render(make_results(make_test())))["tests"][0]
     assert set(found) <= set(definitions["TestResult"]["properties"])
     assert set(found["measurements"]["during"]) <= set(definitions["WindowMeasurements"]["properties"])

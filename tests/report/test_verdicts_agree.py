@@ -6,9 +6,9 @@ import lxml.html
 import pytest
 from rich.console import Console
 
-from pvlvrt_compliance.checks.results import Check, Status
 from pvlvrt_compliance.report import console, html, junit, results_json
 from pvlvrt_compliance.report.verdicts import counts, findings
+from pvlvrt_compliance.results import Status, Verdict
 
 JUNIT_OUTCOME = {"failure": {"fail"}, "error": {"error", "not_evaluated"}, "skipped": {"not_applicable"}}
 
@@ -78,8 +78,8 @@ def test_a_test_without_checks_still_shows_its_verdict(make_test, make_results, 
 
 def test_findings_join_what_has_one_reason(make_test, make_results):
     """Tests and checks that share verdict and reason are read once, worst first; a pass is no finding."""
-    tripped = tuple(Check(check=name, status=Status.NOT_APPLICABLE, message="tripped") for name in ("x", "y"))
-    failed = (Check(check="ride_through", status=Status.FAIL, message="opened"), *tripped)
+    tripped = tuple(Verdict(check=name, status=Status.NOT_APPLICABLE, message="tripped") for name in ("x", "y"))
+    failed = (Verdict(check="ride_through", status=Status.FAIL, message="opened"), *tripped)
     found = findings(make_results(make_test("one", checks=failed), make_test("two", checks=failed)))
     assert [(item.tests, item.checks, item.message) for item in found] == [
         (("one", "two"), ("ride_through",), "opened"),

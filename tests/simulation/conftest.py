@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from pvlvrt_compliance.measure.quantities import Measurements
+from pvlvrt_compliance.measure.quantities import MeasuredWindows
 from pvlvrt_compliance.measure.summary import measure
 from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
@@ -21,7 +21,7 @@ class Record(NamedTuple):
 
     scenario: Scenario
     samples: Segment
-    measured: Measurements
+    measured: MeasuredWindows
 
 
 @pytest.fixture(scope="session")

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from pvlvrt_compliance.checks.results import Status
 from pvlvrt_compliance.measure.fourier import component, mean
 from pvlvrt_compliance.measure.power import instantaneous_power
 from pvlvrt_compliance.measure.sequences import sequence_phasors
 from pvlvrt_compliance.profile import load_profile
+from pvlvrt_compliance.results import Status
 from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario

@@ -2,6 +2,8 @@ import numpy as np
 import pytest
 
 from pvlvrt_compliance.measure.power import instantaneous_power
+from pvlvrt_compliance.plant.protection import DC_OVERVOLTAGE, FREQUENCY, NO_TRIP, OVERCURRENT, UNDERVOLTAGE
+from pvlvrt_compliance.waveforms.trip_causes import TRIP_CAUSES, in_words
 
 
 def opened_s(run) -> float | None:
@@ -70,3 +72,31 @@ def test_settings_of_the_relays_do_not_touch_a_run_within_them(simulated):
     wider = simulated(0.9, settings=("protection.overcurrent_pu=3.0", "protection.dc_overvoltage_v=2000"))
     for name, x in usual.samples.channels.items():
         assert np.array_equal(x, wider.samples[name]), name
+
+
+@pytest.mark.parametrize(
+    ("settings", "fields", "cause"),
+    [
+        (("protection.overcurrent_pu=1.2",), {}, "over-current relay of the plant"),
+        ((), {"cell_temperature_c": -15.0}, "DC over-voltage relay of the plant"),
+        ((), {"duration_s": 0.5}, "under-voltage relay of the plant"),
+        ((), {}, None),
+    ],
+)
+def test_the_record_says_what_opened_the_breaker(simulated, settings, fields, cause):
+    """`trip_cause` is 0 up to the trip and the relay's code from then on, before the breaker has opened."""
+    samples = simulated(0.9, settings=settings, **fields).samples
+    codes = samples["trip_cause"]
+    assert codes[0] == 0
+    assert set(np.unique(codes)) <= {0.0, codes[-1]}
+    assert (in_words(int(codes[-1])) if codes[-1] else None) == cause
+    if cause:
+        assert np.flatnonzero(codes > 0)[0] <= np.flatnonzero(samples["connected"] < 0.5)[0]
+
+
+def test_every_code_of_the_relays_has_words():
+    """The words of the record and the codes of the plant are of one length and order."""
+    codes = (NO_TRIP, OVERCURRENT, DC_OVERVOLTAGE, UNDERVOLTAGE, FREQUENCY)
+    assert codes == tuple(range(len(TRIP_CAUSES)))
+    assert [in_words(code).split()[0] for code in codes] == ["none", "over-current", "DC", "under-voltage", "frequency"]
+    assert in_words(77) == "cause 77"

@@ -14,8 +14,8 @@ import xml.etree.ElementTree as ET
 from functools import cache
 from pathlib import Path
 
-from pvlvrt_compliance.checks.results import Check, Results, Status, TestResult, conclude
 from pvlvrt_compliance.report import html, junit, results_json
+from pvlvrt_compliance.results import Results, Status, TestResult, Verdict, conclude
 from pvlvrt_compliance.study.store import JUNIT, REPORT, RESULTS, WAVEFORMS, OutputFolder
 
 STEPS = ("replace", "rename", "unlink", "remove", "rmdir", "mkdir")
@@ -25,7 +25,7 @@ FOREIGN = ("notes.txt", "waveforms/others.dat", "waveforms/first.png", "interrup
 def results_of(name: str) -> Results:
     """What a run of this name found: the first is passed, all others are errors. Each has a test of its own."""
     status = Status.PASS if name == "first" else Status.ERROR
-    checks = (Check(check="ride_through", status=status, message=name),)
+    checks = (Verdict(check="ride_through", status=status, message=name),)
     tests = [
         TestResult(id=test, status=status, checks=checks, waveforms=f"{WAVEFORMS}/{test}.cfg")
         for test in ("common", name)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from pvlvrt_compliance.checks.results import Status
+from pvlvrt_compliance.results import Status
 
 SAGS = ("three-phase 90 %", "phase c 90 %", "phase c 50 %")
 # Oscillating active power reaches the DC link, which the paper's own strategy is there to protect.

@@ -2,9 +2,8 @@
 
 import pytest
 
-from pvlvrt_compliance.checks.results import Check, Status, TestResult, worst
 from pvlvrt_compliance.profile import TestCase
-from pvlvrt_compliance.profile.profile import Profile
+from pvlvrt_compliance.results import Status, TestResult, Verdict, worst
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.study.rows import points_between, run_rows
@@ -17,7 +16,7 @@ def with_rule(profile, consecutive, after_trip=None):
     rule = {"clause": "6.1", "source": "a test", "consecutive": number(consecutive)}
     if after_trip is not None:
         rule["consecutive_after_trip"] = number(after_trip)
-    return Profile.model_validate(
+    return type(profile).model_validate(
         profile.model_dump(by_alias=True) | {"requirements": {"repeated_runs": rule}, "tests": ()}
     )
 
@@ -38,7 +37,7 @@ def outcomes(profile, cases, verdicts):
     def judge_one(case):
         asked.append(case)
         status = verdicts.get(len(asked), Status.PASS)
-        checks = (Check(check="ride_through", status=status), Check(check="dc_ripple", status=Status.PASS))
+        checks = (Verdict(check="ride_through", status=status), Verdict(check="dc_ripple", status=Status.PASS))
         result = TestResult(id=case.id, status=worst(c.status for c in checks), checks=checks)
         return Judged(result, None)
 

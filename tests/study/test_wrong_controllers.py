@@ -2,7 +2,7 @@
 
 import pytest
 
-from pvlvrt_compliance.checks.results import Status
+from pvlvrt_compliance.results import Status
 from wrong_controllers import Wrong, wrong_run
 
 SAGS = ("three-phase 90 %", "phase c 90 %", "phase c 50 %")

@@ -12,9 +12,10 @@ def check(
 
     Example: pvlvrt-check profiles check my-code.toml
     """
+    from pvlvrt_compliance.checks.registry import INSTALLED_KINDS
     from pvlvrt_compliance.profile.loading import load_profile
 
-    profile = load_profile(file)
+    profile = load_profile(file, INSTALLED_KINDS)
     demands, tests, doubts = len(list(profile.requirements.by_kind())), len(profile.tests()), profile.unverified()
     print(f"ok: {_count(tests, 'test')}, {_count(demands, 'requirement')}, {len(doubts)} not verified")
     for doubt in doubts:

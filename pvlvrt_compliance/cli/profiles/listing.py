@@ -16,9 +16,10 @@ def list_profiles() -> int:
     from rich.console import Console
     from rich.table import Table
 
+    from pvlvrt_compliance.checks.registry import INSTALLED_KINDS
+    from pvlvrt_compliance.data.search_path import known_profiles
     from pvlvrt_compliance.errors import ProfileError
     from pvlvrt_compliance.profile.loading import load_profile
-    from pvlvrt_compliance.profile.search_path import known_profiles
 
     console = Console(highlight=False, markup=False, emoji=False)
     if not console.is_terminal and "COLUMNS" not in os.environ:
@@ -29,7 +30,7 @@ def list_profiles() -> int:
     broken = 0
     for name, known in known_profiles().items():
         try:
-            profile = load_profile(str(known.path))
+            profile = load_profile(str(known.path), INSTALLED_KINDS)
         except ProfileError as error:
             broken += 1
             table.add_row(

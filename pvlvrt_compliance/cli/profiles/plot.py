@@ -25,6 +25,7 @@ def plot(
 
     Example: pvlvrt-check profiles plot iec61400-21 --output envelope.svg
     """
+    from pvlvrt_compliance.checks.registry import INSTALLED_KINDS
     from pvlvrt_compliance.profile.loading import load_profile
 
     if scale and scale not in _SCALES:
@@ -32,7 +33,7 @@ def plot(
     file = Path(output) if output else None
     if file is not None and file.suffix.lower() not in _FORMATS:
         raise UsageError(f"--output {output}: the name must end in {', '.join(_FORMATS)}")
-    profile = load_profile(name)
+    profile = load_profile(name, INSTALLED_KINDS)
     file = file or Path(f"{profile.id}.svg")
     from pvlvrt_compliance.report import profile_figure
 

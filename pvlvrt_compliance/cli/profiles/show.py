@@ -13,9 +13,10 @@ def show(
 
     Example: pvlvrt-check profiles show iec61400-21 | less
     """
+    from pvlvrt_compliance.checks.registry import INSTALLED_KINDS
     from pvlvrt_compliance.profile.loading import load_profile
 
-    profile = load_profile(name)
+    profile = load_profile(name, INSTALLED_KINDS)
     if json:
         print(profile.model_dump_json(by_alias=True, exclude_none=True, indent=2))
         return

@@ -1,12 +1,20 @@
 """What all requirements share."""
 
+from typing import ClassVar
+
 from pydantic import Field
 
-from pvlvrt_compliance.profile.provenance import Frozen, Number, marks_in, weakest
+from pvlvrt_compliance.data.marks import Frozen, Number, marks_in, weakest
 
 
 class Requirement(Frozen):
-    """Base of all requirements: where the demand is written."""
+    """Base of all requirements: where the demand is written.
+
+    ``kinds`` are the names that the requirement has under ``requirements`` in a profile; of one that comes with a check
+    of another package, the check names it.
+    """
+
+    kinds: ClassVar[tuple[str, ...]] = ()
 
     clause: str = Field(min_length=1)
     source: str = Field(min_length=1)

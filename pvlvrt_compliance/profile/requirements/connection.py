@@ -4,8 +4,8 @@ from typing import Self
 
 from pydantic import Field, model_validator
 
+from pvlvrt_compliance.data.marks import Fraction, NotNegative, Positive
 from pvlvrt_compliance.profile.curves import Envelope, Side
-from pvlvrt_compliance.profile.provenance import Fraction, NotNegative, Positive
 from pvlvrt_compliance.profile.regions import RegionTable
 from pvlvrt_compliance.profile.requirements.base import Requirement
 from pvlvrt_compliance.profile.tables import FrequencyBands
@@ -17,6 +17,8 @@ class RideThrough(Requirement):
     Without envelope and regions the profile never lets the inverter go: it must stay connected throughout. With
     ``recovery_fraction`` the active power must also come back (by depth: active_power_recovery).
     """
+
+    kinds = ("ride_through",)
 
     envelope: Envelope | None = None
     envelope_two_phase: Envelope | None = Field(default=None, description="in its place for isolated two-phase faults")
@@ -41,11 +43,24 @@ class RideThrough(Requirement):
         return self
 
 
+class RepeatedRuns(Requirement):
+    """How many runs of a test must be ridden through one after the other."""
+
+    kinds = ("repeated_runs",)
+
+    consecutive: Positive
+    consecutive_after_trip: Positive | None = Field(
+        default=None, description="further runs that must all be ridden through when one tripped; none: it has failed"
+    )
+
+
 class FrequencyRideThrough(Requirement):
     """Stay connected through frequencies and rates of change of frequency.
 
     A band without ``ride_s`` is continuous; outside of all bands the profile lets the inverter go.
     """
+
+    kinds = ("frequency_ride_through",)
 
     bands: FrequencyBands
     rocof_hz_s: Positive | None = Field(default=None, description="largest rate to be ridden through")
@@ -61,16 +76,9 @@ class FrequencyRideThrough(Requirement):
 class PhaseJumpRideThrough(Requirement):
     """Stay connected through a jump of the voltage's angle, and be back at the power before."""
 
+    kinds = ("phase_jump_ride_through",)
+
     all_phases_deg: Positive = Field(description="largest jump of the positive-sequence angle")
     single_phase_deg: Positive | None = Field(default=None, description="largest jump of one phase")
     recovery_fraction: Fraction
     recovery_time_s: Positive
-
-
-class RepeatedRuns(Requirement):
-    """How many runs of a test must be ridden through one after the other."""
-
-    consecutive: Positive
-    consecutive_after_trip: Positive | None = Field(
-        default=None, description="further runs that must all be ridden through when one tripped; none: it has failed"
-    )

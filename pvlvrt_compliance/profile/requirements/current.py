@@ -4,8 +4,8 @@ from typing import Literal
 
 from pydantic import Field
 
+from pvlvrt_compliance.data.marks import Choice, Flag, Fraction, NotNegative, Numbers, Positive
 from pvlvrt_compliance.profile.curves import RatioCurve, SupportCurve
-from pvlvrt_compliance.profile.provenance import Choice, Flag, Fraction, NotNegative, Numbers, Positive
 from pvlvrt_compliance.profile.requirements.base import Requirement
 
 DeadBandMode = Literal["none", "shift", "step"]
@@ -14,6 +14,8 @@ Reference = Literal["prefault", "nominal"]
 
 class CurrentLimit(Requirement):
     """Fundamental phase currents, once settled, and the instantaneous peak, always."""
+
+    kinds = ("current_limit",)
 
     limit_pu: Positive
     tolerance_pu: NotNegative
@@ -29,6 +31,8 @@ class CurrentLimit(Requirement):
 class ReactiveSupport(Requirement):
     """Mean reactive power during a sag against a curve over the voltage: Q of V."""
 
+    kinds = ("reactive_support",)
+
     curve: SupportCurve
     clip_to_capability: Flag = Field(description="demand at most (V+ - V-) S")
     no_support_from_pu: Positive = Field(description="V+ at and above which no reactive power is wanted")
@@ -43,6 +47,8 @@ class ReactiveCurrent(Requirement):
     sequences, with what flowed before, add up to more than ``limit_pu``, both are clipped in the same proportion. A
     test may set another K.
     """
+
+    kinds = ("reactive_current", "negative_sequence_current")
 
     k: Positive
     k_range: Numbers | None = Field(default=None, description="lowest and highest K that the code lets be set")
@@ -63,6 +69,8 @@ class SupportDynamics(Requirement):
     activation to the last entry into the band around the final value.
     """
 
+    kinds = ("support_dynamics",)
+
     activation_pu: Positive
     activation_s: Positive
     response_fraction: Fraction
@@ -76,6 +84,8 @@ class SupportDynamics(Requirement):
 class ReactiveRatio(Requirement):
     """Share of the reactive current in the total current of the positive sequence, at least a curve over V+."""
 
+    kinds = ("reactive_ratio",)
+
     curve: RatioCurve
     within_s: NotNegative = Field(description="from the start of the sag")
     tolerance: NotNegative
@@ -84,6 +94,8 @@ class ReactiveRatio(Requirement):
 
 class Toggling(Requirement):
     """Support that switches on and off at a threshold although the voltage stands still."""
+
+    kinds = ("toggling",)
 
     on_pu: Positive = Field(description="reactive current above which support is on")
     off_pu: Positive = Field(description="reactive current below which it is off again")

@@ -2,13 +2,15 @@
 
 from pydantic import Field
 
-from pvlvrt_compliance.profile.provenance import Fraction, Frozen, NotNegative, Positive
+from pvlvrt_compliance.data.marks import Fraction, Frozen, NotNegative, Positive
 from pvlvrt_compliance.profile.requirements.base import Requirement
 from pvlvrt_compliance.profile.tables import RecoveryTable
 
 
 class ActivePowerRecovery(Requirement):
     """Active power after clearing, by the mean V+ of the sag; times count from the voltage's return."""
+
+    kinds = ("active_power_recovery",)
 
     return_pu: Positive = Field(description="V+ at and above which the voltage has returned")
     first_fraction: Fraction = Field(description="of the active power before the sag, to be reached first")
@@ -37,6 +39,8 @@ class ConsumptionZones(Frozen):
 class Consumption(Requirement):
     """Active and reactive power taken from the grid, by zones of the fault."""
 
+    kinds = ("consumption",)
+
     balanced: ConsumptionZones
     unbalanced: ConsumptionZones | None = Field(default=None, description="none: an unbalanced fault is not judged")
     unbalanced_from_pu: Positive = Field(description="V- from which a fault is unbalanced")
@@ -45,11 +49,15 @@ class Consumption(Requirement):
 class ConstantPower(Requirement):
     """Ripple of the active power at twice the grid frequency during a sag."""
 
+    kinds = ("constant_power",)
+
     limit_fraction: Positive = Field(description="amplitude, of rated power")
 
 
 class ReturnToPrefault(Requirement):
     """Active and reactive power at the end of the record are those before the sag."""
+
+    kinds = ("return_to_prefault",)
 
     active_fraction: Positive = Field(description="of rated power")
     reactive_fraction: Positive = Field(description="of rated power")
@@ -57,6 +65,8 @@ class ReturnToPrefault(Requirement):
 
 class OverfrequencyPower(Requirement):
     """Active power falls in proportion to the frequency above a threshold (LFSM-O)."""
+
+    kinds = ("overfrequency_power",)
 
     threshold_hz: Positive
     droop_fraction: Positive = Field(description="of nominal frequency, for the whole of the active power before")

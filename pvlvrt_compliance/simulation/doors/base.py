@@ -8,14 +8,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.simulation import ports
 from pvlvrt_compliance.simulation.exchange import COMMANDS, SIGNALS
 from pvlvrt_compliance.simulation.ports import REAL64, Memory, PortTable
 from pvlvrt_compliance.units import Nominal
 
 Value = float | int | bool | str
 
-ITEM_SIZES = {1: 1, 2: 1, 3: 1, 4: 2, 5: 2, 6: 4, 7: 4, 8: 4, 9: 8}
+NUMBER_TYPES: Mapping[int, type[np.number]] = {
+    ports.CHAR: np.int8,
+    ports.INT8: np.int8,
+    ports.UINT8: np.uint8,
+    ports.INT16: np.int16,
+    ports.UINT16: np.uint16,
+    ports.INT32: np.int32,
+    ports.UINT32: np.uint32,
+    ports.REAL32: np.float32,
+    ports.REAL64: np.float64,
+}
+"""Type of a number by its code."""
+
+ITEM_SIZES = {code: np.dtype(number).itemsize for code, number in NUMBER_TYPES.items()}
 """Bytes of a number by the code of its type."""
+
+MODULATING, VOLTAGES = COMMANDS[:3], COMMANDS[3:]
+"""Commands of a controller that modulates, and of one that commands voltages."""
 
 
 class DoorError(UsageError):
@@ -144,14 +161,6 @@ class DoorCall(NamedTuple):
     notes: Sequence[str] = ()  # what the controller has to say; grows as it runs
 
 
-class Setting(NamedTuple):
-    """What a controller is told before its first sample."""
-
-    nominal: Nominal
-    steady_v_dc: float  # DC-link voltage of the steady state it is started in (V)
-    time_limit_s: float | None = None
-
-
 class Door(Protocol):
     """One kind of controller. Used in a process of its own: opened once, run once, closed."""
 
@@ -164,8 +173,8 @@ class Door(Protocol):
             When there is nothing to open.
         """
 
-    def open(self, setting: Setting) -> DoorCall:
-        """Make a controller at rest, ready for its first sample.
+    def open(self, nominal: Nominal) -> DoorCall:
+        """Make a controller at rest for an inverter of this rating, ready for its first sample.
 
         Raises
         ------

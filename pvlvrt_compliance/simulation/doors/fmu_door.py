@@ -1,6 +1,5 @@
 """The door for FMUs for co-simulation, ``ctrl.fmu``, of FMI 2 and FMI 3."""
 
-import ctypes
 import hashlib
 import tempfile
 import zipfile
@@ -9,13 +8,13 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from pvlvrt_compliance.simulation.doors.base import Block, Description, DoorCall, DoorError, Setting, Value
+from pvlvrt_compliance.simulation.doors.base import Block, Description, DoorCall, DoorError, Value
 from pvlvrt_compliance.simulation.doors.fmu_instance import Fmu, laid_out
 from pvlvrt_compliance.simulation.doors.fmu_model import read_model
 from pvlvrt_compliance.simulation.doors.given import checked_parameters, seconds
 from pvlvrt_compliance.simulation.doors.mapping import Mapped, check_commands, map_inputs, map_outputs, set_constants
 from pvlvrt_compliance.simulation.doors.mapping_file import load_mapping, mapping_path
-from pvlvrt_compliance.simulation.native_call import FUNCTION
+from pvlvrt_compliance.simulation.native_call import FUNCTION, address_of
 from pvlvrt_compliance.units import Nominal
 
 SAMPLE_TIME = "sample_time_s"
@@ -45,8 +44,9 @@ class FmuDoor:
         if not self._file.is_file():
             raise DoorError(f"there is no file {self._file}")
         self._model = read_model(self._file)
-        own = {name: value for name, value in given.items() if name != SAMPLE_TIME}
-        self._given = checked_parameters(own, (p.info for p in self._model.parameters))
+        parameters = self._model.parameters
+        holds = {p.info.name: p.holds for p in parameters}
+        self._given = checked_parameters(given, (p.info for p in parameters), holds, besides=(SAMPLE_TIME,))
         self._sample_time_s = seconds(given, SAMPLE_TIME) or self._proposed_sample_time_s()
         self._inputs, self._outputs = laid_out(self._model.inputs), laid_out(self._model.outputs)
         self._mapping = load_mapping(mapping_path(spec, mapping))
@@ -67,9 +67,9 @@ class FmuDoor:
             notes=self._model.notes,
         )
 
-    def open(self, setting: Setting) -> DoorCall:
+    def open(self, nominal: Nominal) -> DoorCall:
         """Unpack, load and initialise it; make the function that the loop calls."""
-        inputs, outputs = self._mapped(setting.nominal)
+        inputs, outputs = self._mapped(nominal)
         check_commands(outputs)
         folder = self._resources.enter_context(tempfile.TemporaryDirectory(prefix="fmu-", ignore_cleanup_errors=True))
         _unpack(self._file, Path(folder))
@@ -80,7 +80,7 @@ class FmuDoor:
         function = FUNCTION(fmu.stepping(self._sample_time_s, self._inputs, self._outputs))
         self._alive: Any = function
         return DoorCall(
-            address=int(ctypes.cast(function, ctypes.c_void_p).value or 0),
+            address=address_of(function),
             argument=0,
             inputs=Block(self._inputs.memory, inputs.elements),
             outputs=Block(self._outputs.memory, outputs.elements),

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pvlvrt_compliance.simulation.doors.base import ITEM_SIZES, DoorError, Value, block_memory
 from pvlvrt_compliance.simulation.doors.fmu_model import FmuModel, FmuParameter, Variable, fmi_library
 from pvlvrt_compliance.simulation.doors.mapping import RawPort
+from pvlvrt_compliance.simulation.native_call import address_of
 
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING, TERMINATED = range(7)
 """What a function of FMI gives; the last is none of FMI's: a step was done, and is to be the last."""
@@ -197,8 +198,7 @@ class Fmu:
     def _bare(self, name: str, *arguments: Any) -> Any:
         """Give a function of the binary that takes the instance and plain numbers: fewer conversions at every call."""
         found = getattr(self._fmu.dll, f"{self._prefix}{name}")
-        address = int(ctypes.cast(found, ctypes.c_void_p).value or 0)
-        function = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, *arguments)(address)
+        function = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, *arguments)(address_of(found))
         self._names[id(function)] = f"{self._prefix}{name}"
         self._alive.append(function)
         return function

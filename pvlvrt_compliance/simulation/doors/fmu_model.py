@@ -6,7 +6,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from pvlvrt_compliance.simulation.doors.base import DoorError, ParameterInfo, Value
+import numpy as np
+
+from pvlvrt_compliance.simulation.doors.base import NUMBER_TYPES, DoorError, ParameterInfo, Value
+from pvlvrt_compliance.simulation.doors.given import UNLIMITED, Range, range_of_type
 from pvlvrt_compliance.simulation.ports import INT8, INT16, INT32, REAL32, REAL64, UINT8, UINT16, UINT32
 
 
@@ -38,6 +41,9 @@ _TYPES: Mapping[str, Mapping[str, NumberType]] = {
 }
 """Types that can be ports, by the first figure of FMI's version."""
 
+_NO_PORTS: Mapping[str, type[np.number]] = {"Int64": np.int64, "UInt64": np.uint64, "Enumeration": np.int64}
+"""Further types of numbers of FMI 3, of parameters only."""
+
 _WORDS: Mapping[str, type] = {"Real": float, "Float64": float, "Float32": float, "Boolean": bool, "String": str}
 
 
@@ -58,6 +64,7 @@ class FmuParameter(NamedTuple):
     info: ParameterInfo
     reference: int
     type: str  # name in FMI
+    holds: Range  # smallest and largest number of that type
 
 
 class FmuModel(NamedTuple):
@@ -95,7 +102,7 @@ def read_model(file: Path) -> FmuModel:
         sample_time_s=_sample_time_s(model, _clock_intervals(file)),
         inputs=_ports(variables, "input", _TYPES[version]),
         outputs=_ports(variables, "output", _TYPES[version]),
-        parameters=tuple(_parameter(v) for v in variables if v.causality == "parameter" and _is_settable(v)),
+        parameters=tuple(_parameter(v, version) for v in variables if v.causality == "parameter" and _is_settable(v)),
         notes=notes,
     )
 
@@ -205,7 +212,7 @@ def _is_settable(variable: Any) -> bool:
     return not variable.shape and variable.type != "Binary"
 
 
-def _parameter(variable: Any) -> FmuParameter:
+def _parameter(variable: Any, version: str) -> FmuParameter:
     low, high = _declared(variable, "min"), _declared(variable, "max")
     info = ParameterInfo(
         name=variable.name,
@@ -215,7 +222,13 @@ def _parameter(variable: Any) -> FmuParameter:
         minimum=None if low is None else float(low),
         maximum=None if high is None else float(high),
     )
-    return FmuParameter(info, variable.valueReference, variable.type)
+    return FmuParameter(info, variable.valueReference, variable.type, _range_of(variable.type, version))
+
+
+def _range_of(kind: str, version: str) -> Range:
+    if kind in _TYPES[version]:
+        return range_of_type(NUMBER_TYPES[_TYPES[version][kind].kind])
+    return range_of_type(_NO_PORTS[kind]) if kind in _NO_PORTS else UNLIMITED
 
 
 def _start(variable: Any) -> Value:

@@ -1,7 +1,7 @@
 """The door for a controller in C or C++ by the IEEE/CIGRE DLL interface (CIGRE TB 958): ``libctrl.so``."""
 
 import ctypes
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,11 +11,10 @@ from pvlvrt_compliance.simulation.doors.base import (
     DoorCall,
     DoorError,
     Element,
-    Setting,
     Value,
     signal_index,
 )
-from pvlvrt_compliance.simulation.doors.library_file import Library, address_of
+from pvlvrt_compliance.simulation.doors.library_file import Library
 from pvlvrt_compliance.simulation.doors.library_info import LibraryInfo, PortInfo, info_of, settings_of
 from pvlvrt_compliance.simulation.doors.library_instance import LibraryInstance, Snapshot
 from pvlvrt_compliance.simulation.doors.library_layout import Layout, ModelInfo, layout_of
@@ -28,12 +27,11 @@ from pvlvrt_compliance.simulation.doors.mapping import (
     set_constants,
 )
 from pvlvrt_compliance.simulation.doors.mapping_file import load_mapping, mapping_path
-from pvlvrt_compliance.simulation.native_call import FUNCTION
+from pvlvrt_compliance.simulation.native_call import FUNCTION, address_of, guarded
 from pvlvrt_compliance.units import Nominal
 
 _DEMANDED = ("Model_CheckParameters", "Model_Initialize", "Model_Outputs", "Model_Terminate")
 _NO_STATES = "keeps no state in the arrays of the interface: no snapshot of it can be made"
-_FAILED = 2
 
 
 class _Functions(NamedTuple):
@@ -69,7 +67,7 @@ class LibraryDoor:
         self._library = Library(file)
         self._info = _info(self._library, file)
         self._functions = _functions(self._library, file)
-        self._settings = settings_of(self._info.parameters, dict(given))
+        self._settings = settings_of(self._info.parameters, given)
         self._mapping = load_mapping(mapping_path(spec, mapping))
         self._instance: LibraryInstance | None = None
         self._said = ""
@@ -89,15 +87,15 @@ class LibraryDoor:
             notes=() if self._info.keeps_states else (_NO_STATES,),
         )
 
-    def open(self, setting: Setting) -> DoorCall:
+    def open(self, nominal: Nominal) -> DoorCall:
         """Allocate an instance; the library's own first calls follow when its inputs are there."""
         instance = LibraryInstance(self._info, self._settings)
         self._instance = instance
-        inputs, outputs = self._mapped(instance.inputs_at, instance.outputs_at, setting.nominal)
+        inputs, outputs = self._mapped(instance.inputs_at, instance.outputs_at, nominal)
         check_commands(outputs)
         set_constants(instance.memory, inputs.constants)
         time = Element(signal_index("time_s"), instance.time_at)
-        first, note = FUNCTION(self._guarded(self._begin)), FUNCTION(self._guarded(instance.note))
+        first, note = (FUNCTION(guarded(do, self._say)) for do in (self._begin, instance.note))
         self._alive = (first, note)
         return DoorCall(
             address=address_of(self._functions.outputs),
@@ -168,18 +166,8 @@ class LibraryDoor:
             if value != before[name]:
                 instance.notes.append(f"the controller has changed its parameter {name} from {before[name]} to {value}")
 
-    def _guarded(self, function: Callable[[], None]) -> Callable[[Any], int]:
-        """Function for the loop to call; an error ends the run."""
-
-        def call(_argument: Any) -> int:
-            try:
-                function()
-            except BaseException as error:
-                self._said = str(error)
-                return _FAILED
-            return 0
-
-        return call
+    def _say(self, reason: str) -> None:
+        self._said = reason
 
 
 def _info(library: Library, file: Path) -> LibraryInfo:

@@ -77,11 +77,6 @@ class Library:
             raise DoorError(f"{file} cannot be loaded: {error}") from None
 
 
-def address_of(function: Any) -> int:
-    """Address of a function of C; 0 of None."""
-    return 0 if function is None else int(ctypes.cast(function, ctypes.c_void_p).value or 0)
-
-
 def _check_format(name: str, content: bytes) -> None:
     """Refuse a file that is no shared library of this system and machine.
 

@@ -1,13 +1,14 @@
 """What a controller in C says of itself, checked, in plain Python: ports, parameters, sample time, states."""
 
-import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from pvlvrt_compliance.errors import did_you_mean
+import numpy as np
+
 from pvlvrt_compliance.scenario.parameters import SimulationParameters
 from pvlvrt_compliance.simulation import ports
-from pvlvrt_compliance.simulation.doors.base import DoorError, ParameterInfo, Value
+from pvlvrt_compliance.simulation.doors.base import NUMBER_TYPES, DoorError, ParameterInfo, Value
+from pvlvrt_compliance.simulation.doors.given import checked_parameters, range_of_type
 from pvlvrt_compliance.simulation.doors.library_layout import C_STRING, TYPES, Member, ModelInfo
 
 EMT, RMS = 1, 2
@@ -15,16 +16,6 @@ EMT, RMS = 1, 2
 
 _INHERITED = -1.0
 _MOST_PORTS, _MOST_WIDTH, _MOST_STATES = 10_000, 100_000, 10_000_000
-_FRACTIONAL = (ports.REAL32, ports.REAL64)
-_WHOLE_RANGES = {
-    ports.CHAR: (-128, 127),
-    ports.INT8: (-128, 127),
-    ports.UINT8: (0, 255),
-    ports.INT16: (-32768, 32767),
-    ports.UINT16: (0, 65535),
-    ports.INT32: (-2147483648, 2147483647),
-    ports.UINT32: (0, 4294967295),
-}
 
 
 class PortInfo(NamedTuple):
@@ -43,7 +34,6 @@ class LibraryParameter(NamedTuple):
     unit: str
     description: str
     kind: int  # code of its type
-    fixed: bool  # does not change after the first sample
     default: Value
     minimum: float | None  # none: not stated
     maximum: float | None
@@ -105,7 +95,7 @@ def text_of(found: bytes | None) -> str:
         return (found or b"").decode("latin-1").strip()
 
 
-def settings_of(parameters: Sequence[LibraryParameter], given: dict[str, Value]) -> dict[str, Value]:
+def settings_of(parameters: Sequence[LibraryParameter], given: Mapping[str, Value]) -> dict[str, Value]:
     """Value of every parameter: the one that is given, checked, or the library's default.
 
     Raises
@@ -113,41 +103,16 @@ def settings_of(parameters: Sequence[LibraryParameter], given: dict[str, Value])
     DoorError
         When one is unknown, of another type, or out of range.
     """
-    known = {p.name: p for p in parameters}
-    for name in given:
-        if name not in known:
-            has = f"; it has {', '.join(known)}" if known else "; it has none"
-            raise DoorError(
-                f"--set controller.{name}: the controller has no such parameter{did_you_mean(name, known)}{has}"
-            )
-    return {name: _checked(p, given[name]) if name in given else p.default for name, p in known.items()}
+    kinds = {p.name: p.kind for p in parameters}
+    numbers = {name: _code_of(value) if kinds.get(name) == ports.CHAR else value for name, value in given.items()}
+    holds = {name: range_of_type(NUMBER_TYPES[kind]) for name, kind in kinds.items() if kind != C_STRING}
+    checked = checked_parameters(numbers, (p.public() for p in parameters), holds)
+    return {p.name: checked.get(p.name, p.default) for p in parameters}
 
 
-def _checked(p: LibraryParameter, value: Value) -> Value:
-    if p.kind == C_STRING:
-        if "\0" in str(value):
-            raise DoorError(f"--set controller.{p.name}: a text cannot hold a NUL character")
-        return str(value)
-    number = _number(p, value)
-    low, high = _WHOLE_RANGES.get(p.kind, (-math.inf, math.inf))
-    low = low if p.minimum is None else max(low, p.minimum)
-    high = high if p.maximum is None else min(high, p.maximum)
-    if not low <= number <= high:
-        unit = f" {p.unit}" if p.unit else ""
-        raise DoorError(f"--set controller.{p.name}: {value}{unit} is out of range; {low:g} to {high:g} is allowed")
-    return number
-
-
-def _number(p: LibraryParameter, value: Value) -> float | int:
-    if p.kind == ports.CHAR and isinstance(value, str) and len(value.encode()) == 1:
-        return ord(value)
-    if isinstance(value, str) or (isinstance(value, float) and not math.isfinite(value)):
-        raise DoorError(f"--set controller.{p.name}: {value!r} is not a number")
-    if p.kind in _FRACTIONAL:
-        return float(value)
-    if int(value) != value:
-        raise DoorError(f"--set controller.{p.name}: {value!r} is not a whole number")
-    return int(value)
+def _code_of(value: Value) -> Value:
+    """The whole number that a single character of type char is."""
+    return ord(value) if isinstance(value, str) and len(value) == 1 and value.isascii() else value
 
 
 def _sample_time_s(raw: ModelInfo) -> float:
@@ -192,10 +157,9 @@ def _parameter(raw: Any) -> LibraryParameter:
         unit=text_of(raw.Unit),
         description=text_of(raw.Description),
         kind=kind,
-        fixed=bool(raw.FixedValue),
         default=text_of(raw.DefaultValue.v10) if kind == C_STRING else _value(raw.DefaultValue, kind),
-        minimum=float(low) if low is not None and stated else None,
-        maximum=float(high) if high is not None and stated else None,
+        minimum=_bound(low, kind) if low is not None and stated else None,
+        maximum=_bound(high, kind) if high is not None and stated else None,
     )
 
 
@@ -204,6 +168,11 @@ def _value(union: Any, kind: int) -> float | int:
         return int(union.v2)
     found: float | int = getattr(union, f"v{kind}")
     return found
+
+
+def _bound(number: float, kind: int) -> float:
+    """A bound as its author wrote it: 0.1, not the number of 32 bits next to it, which is above."""
+    return float(str(np.float32(number))) if kind == ports.REAL32 else float(number)
 
 
 def _check_count(count: int, found: Any, what: str) -> None:

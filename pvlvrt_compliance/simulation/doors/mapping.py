@@ -7,7 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pvlvrt_compliance.simulation.doors.base import ITEM_SIZES, DoorError, Element, Port
+from pvlvrt_compliance.simulation.doors.base import (
+    ITEM_SIZES,
+    MODULATING,
+    NUMBER_TYPES,
+    VOLTAGES,
+    DoorError,
+    Element,
+    Port,
+)
 from pvlvrt_compliance.simulation.doors.mapping_file import (
     InputEntry,
     MappingFile,
@@ -24,8 +32,6 @@ from pvlvrt_compliance.units import Nominal
 
 __all__ = ["Constant", "Mapped", "MappingFile", "RawPort", "check_commands", "load_mapping", "map_inputs"]
 __all__ += ["map_outputs", "mapping_path", "missing_commands", "missing_words", "set_constants"]
-
-MODULATING, VOLTAGES = COMMANDS[:3], COMMANDS[3:]
 
 
 def map_inputs(ports: Sequence[RawPort], mapping: MappingFile | None, nominal: Nominal) -> Mapped:
@@ -105,16 +111,13 @@ def missing_words(missing: Sequence[str], free: Sequence[str]) -> str:
 def set_constants(memory: NDArray[np.uint8], constants: Iterable[Constant]) -> None:
     """Write constants into a block's memory; whole numbers are rounded, and stay in the range of their type."""
     for constant in constants:
-        kind = _TYPES[constant.kind - 1]
+        kind: Any = NUMBER_TYPES[constant.kind]
         place = memory[constant.byte : constant.byte + ITEM_SIZES[constant.kind]].view(kind)
         if np.issubdtype(kind, np.floating):
             place[0] = constant.value
         else:
             limits = np.iinfo(kind)
             place[0] = round(min(max(constant.value, limits.min), limits.max))
-
-
-_TYPES: Sequence[Any] = (np.int8, np.int8, np.uint8, np.int16, np.uint16, np.int32, np.uint32, np.float32, np.float64)
 
 
 def _guess_output(name: str, width: int) -> Guess:

@@ -1,8 +1,6 @@
 """The file that ties a controller's ports to the plant: its tables, and how it is read."""
 
-import json
-import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -13,12 +11,12 @@ from pydantic import (
     Field,
     FiniteFloat,
     PrivateAttr,
-    ValidationError,
     model_validator,
 )
 
-from pvlvrt_compliance.positions import Location, key_lines
-from pvlvrt_compliance.problems import dotted, problem_lines
+from pvlvrt_compliance.data.positions import Location, Places
+from pvlvrt_compliance.data.reader import Kind, Source, read_model
+from pvlvrt_compliance.errors import listed
 from pvlvrt_compliance.simulation.doors.base import DoorError
 from pvlvrt_compliance.simulation.doors.port_units import Bases
 
@@ -100,19 +98,11 @@ class MappingFile(_Table):
     currents: Direction = Field(default="out_of_inverter", description="positive phase currents that name no direction")
     output_kind: OutputKind | None = Field(default=None, description="of two kinds of commands that are complete")
 
-    _origin: str = PrivateAttr(default="mapping")
-    _lines: dict[Location, int] = PrivateAttr(default_factory=dict)
+    _places: Places = PrivateAttr(default=Places("mapping", {}))
 
     def problem(self, location: Location, text: str) -> str:
         """A problem in words: file, line, key, what is wrong."""
-        return _placed(self._origin, self._lines, location, text)
-
-
-def _placed(origin: str, lines: Mapping[Location, int], location: Location, text: str) -> str:
-    at: Location = location
-    while at and at not in lines:
-        at = at[:-1]
-    return f"{origin}:{lines.get(at, 1)}: {dotted(location)}{': ' if location else ''}{text}"
+        return self._places.problem(location, text)
 
 
 def load_mapping(path: str | Path | None) -> MappingFile | None:
@@ -125,28 +115,18 @@ def load_mapping(path: str | Path | None) -> MappingFile | None:
     """
     if path is None:
         return None
-    try:
-        text = Path(path).read_text("utf-8-sig")
-        table = tomllib.loads(text)
-    except OSError as error:
-        raise DoorError(f"mapping file {path}: cannot be read ({error.strerror})") from None
-    except (ValueError, RecursionError) as error:
-        raise DoorError(f"mapping file {path}: not TOML ({error})") from None
-    lines = key_lines(text)
-    try:
-        # Strict JSON mode is strict about numbers and texts, yet takes a list for a tuple.
-        mapping = MappingFile.model_validate_json(json.dumps(table, default=str), strict=True)
-    except ValidationError as error:
-        found = problem_lines(error, MappingFile, table)
-        raise refusal(str(path), [_placed(str(path), lines, where, what) for where, what in found]) from None
-    mapping._origin, mapping._lines = str(path), lines
+    source = Source(Path(path), MAPPING)
+    mapping = read_model(source, MappingFile)
+    mapping._places = source.places
     return mapping
 
 
 def refusal(origin: str, problems: Sequence[str]) -> DoorError:
     """All problems of a mapping as one error."""
-    count = f"{len(problems)} problem{'s' * (len(problems) != 1)}"
-    return DoorError("\n".join([f"{origin}: {count}", *(f"  {problem}" for problem in problems)]))
+    return DoorError(listed(origin, problems))
+
+
+MAPPING = Kind("a mapping file", "mapping files", refusal)
 
 
 def mapping_path(spec: str, named: str | None) -> str | None:

@@ -3,7 +3,6 @@
 The protocol is in docs/controllers/program.md.
 """
 
-import ctypes
 import hashlib
 import struct
 from collections.abc import Callable, Mapping, Sequence
@@ -15,7 +14,6 @@ from pvlvrt_compliance.simulation.doors.base import (
     Description,
     DoorCall,
     DoorError,
-    Setting,
     Value,
     block_memory,
 )
@@ -31,7 +29,7 @@ from pvlvrt_compliance.simulation.doors.mapping import (
 )
 from pvlvrt_compliance.simulation.doors.program_hello import PortAnswer, as_line, greeting, hello_in, shown, table_in
 from pvlvrt_compliance.simulation.doors.program_link import Conversation, command_of, files_of, link_to
-from pvlvrt_compliance.simulation.native_call import FUNCTION
+from pvlvrt_compliance.simulation.native_call import FUNCTION, address_of, guarded
 from pvlvrt_compliance.units import Nominal
 
 TIMEOUT = "reply_timeout_s"
@@ -72,7 +70,7 @@ class ProgramDoor:
             self._talk.tell(greeting(own))
             self._answer = self._talk.line()
             self._hello = hello_in(self._answer)
-            self._given = checked_parameters(own, self._hello.parameter_infos())
+            self._given = checked_parameters(given, self._hello.parameter_infos(), besides=(TIMEOUT,))
         except DoorError:
             self.close()
             raise
@@ -83,15 +81,15 @@ class ProgramDoor:
         inputs, outputs = self._mapped(Nominal())
         return replace(self._hello.description(self._digest()), inputs=inputs.ports, outputs=outputs.ports)
 
-    def open(self, setting: Setting) -> DoorCall:
+    def open(self, nominal: Nominal) -> DoorCall:
         """Have it start, and make the function that the loop calls."""
         talk, binary = self._talk, self._hello.mode == "binary"
         assert talk is not None
-        inputs, outputs = self._mapped(setting.nominal)
+        inputs, outputs = self._mapped(nominal)
         check_commands(outputs)
         memories = [block_memory(_HEAD + 8 * sum(p.width for p in ports)) for ports in (self._inputs, self._outputs)]
         set_constants(memories[0], inputs.constants)
-        talk.tell(self._start(setting.nominal))
+        talk.tell(self._start(nominal))
         if table_in(talk.line()).get("ready") is not True:
             raise DoorError('it must answer the start by {"ready": true}')
         talk.timeout_s = self._reply_s
@@ -101,10 +99,10 @@ class ProgramDoor:
         else:
             numbers = [memory.data.cast("d")[_HEAD // 8 :] for memory in memories]
             exchange = _json_exchange(talk, self._inputs, self._outputs, *numbers)
-        function = FUNCTION(self._guarded(exchange))
+        function = FUNCTION(guarded(exchange, self._say))
         self._alive: Any = function
         return DoorCall(
-            address=int(ctypes.cast(function, ctypes.c_void_p).value or 0),
+            address=address_of(function),
             argument=0,
             inputs=Block(memories[0], inputs.elements),
             outputs=Block(memories[1], outputs.elements),
@@ -142,18 +140,8 @@ class ProgramDoor:
     def _mapped(self, nominal: Nominal) -> tuple[Mapped, Mapped]:
         return map_inputs(self._inputs, self._mapping, nominal), map_outputs(self._outputs, self._mapping, nominal)
 
-    def _guarded(self, exchange: Callable[[], None]) -> Callable[[Any], int]:
-        """Function for the loop; whatever goes wrong ends the run."""
-
-        def advance(_argument: Any) -> int:
-            try:
-                exchange()
-            except BaseException as error:
-                self._said = str(error) or repr(error)
-                return 2
-            return 0
-
-        return advance
+    def _say(self, reason: str) -> None:
+        self._said = reason
 
 
 def _laid_out(ports: Sequence[PortAnswer]) -> tuple[RawPort, ...]:

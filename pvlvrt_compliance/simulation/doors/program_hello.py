@@ -6,6 +6,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, FiniteFloat, ValidationError
 
+from pvlvrt_compliance.data.problems import dotted, problem_lines
+from pvlvrt_compliance.errors import listed
 from pvlvrt_compliance.simulation.doors.base import Description, DoorError, ParameterInfo
 from pvlvrt_compliance.simulation.exchange import COMMANDS, SIGNALS
 from pvlvrt_compliance.waveforms.container import unit_of
@@ -120,8 +122,8 @@ def hello_in(line: bytes) -> Hello:
     try:
         hello = Hello.model_validate(message)
     except ValidationError as error:
-        problems = [f"  {'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors()]
-        raise DoorError("\n".join(["its answer to the hello cannot be used:", *problems])) from None
+        problems = [f"{dotted(location)}: {text}" for location, text in problem_lines(error, Hello, message)]
+        raise DoorError(listed("its answer to the hello cannot be used", problems)) from None
     for what, ports in (("inputs", hello.inputs), ("outputs", hello.outputs)):
         names = [port.name for port in ports]
         if twice := sorted({name for name in names if names.count(name) > 1}):

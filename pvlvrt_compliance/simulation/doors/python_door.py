@@ -1,6 +1,5 @@
 """The door for a Python class, ``my_ctrl.py:MyController``: see `pvlvrt_compliance.controllers`."""
 
-import ctypes
 import hashlib
 import importlib.util
 import inspect
@@ -17,23 +16,25 @@ from typing import Any
 from pvlvrt_compliance.controllers import Measurements
 from pvlvrt_compliance.errors import did_you_mean
 from pvlvrt_compliance.simulation.doors.base import (
+    MODULATING,
+    VOLTAGES,
     Description,
     DoorCall,
     DoorError,
     ParameterInfo,
     Port,
-    Setting,
     Value,
     command_index,
     real_block,
     signal_index,
 )
+from pvlvrt_compliance.simulation.doors.given import checked_parameters
 from pvlvrt_compliance.simulation.exchange import COMMANDS, SIGNALS
 from pvlvrt_compliance.simulation.foreign_loop import RECORDED
-from pvlvrt_compliance.simulation.native_call import FUNCTION
+from pvlvrt_compliance.simulation.native_call import FUNCTION, address_of
+from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import unit_of
 
-_MODULATING, _VOLTAGES = COMMANDS[:3], COMMANDS[3:]
 _TRACEBACK_LINES = 6
 _MOST_SIGNALS = 200
 
@@ -63,7 +64,7 @@ class PythonDoor:
             raise DoorError(f"there is no file {self._file}")
         made = _class_in(self._file, self._class_name)
         self._parameters = _parameters(made)
-        self._controller = _make(made, _checked(given, self._parameters), _keywords(made))
+        self._controller = _make(made, checked_parameters(given, self._parameters), bool(_defaults(made)))
         self._said = ""
         self._alive: tuple[Any, ...] = ()
         self._sample_time_s = _sample_time_s(self._controller)
@@ -73,7 +74,7 @@ class PythonDoor:
 
     def describe(self) -> Description:
         """Class, file, what it can be given and what it commands."""
-        commands = _VOLTAGES if self._in_volts else _MODULATING
+        commands = VOLTAGES if self._in_volts else MODULATING
         return Description(
             kind="python",
             name=self._class_name,
@@ -81,30 +82,30 @@ class PythonDoor:
             sample_time_s=self._sample_time_s,
             inputs=tuple(Port(name, unit_of(name), mapped_to=name) for name in SIGNALS),
             outputs=tuple(Port(name, unit_of(name), mapped_to=name) for name in commands),
-            parameters=tuple(ParameterInfo(name, value) for name, value in self._parameters.items()),
+            parameters=self._parameters,
         )
 
     @property
     def _in_volts(self) -> bool:
         return bool(getattr(self._controller, "commands_voltages", False))
 
-    def open(self, setting: Setting) -> DoorCall:
+    def open(self, nominal: Nominal) -> DoorCall:
         """Reset the controller and make the function that the loop calls."""
         try:
-            self._controller.reset(setting.nominal)
+            self._controller.reset(nominal)
             names = self._signal_names()
         except DoorError:
             raise
         except BaseException as error:
             raise DoorError(f"reset() failed: {_tail(error)}") from None
         inputs = real_block([signal_index(name) for name in SIGNALS])
-        commands = _VOLTAGES if self._in_volts else _MODULATING
+        commands = VOLTAGES if self._in_volts else MODULATING
         further = range(len(COMMANDS), len(COMMANDS) + len(names))
         outputs = real_block([*(command_index(name) for name in commands), *further])
         function = FUNCTION(self._caller(inputs.memory.data, outputs.memory.data.cast("d"), names))
         self._alive = (function, inputs, outputs)
         return DoorCall(
-            address=_address(function),
+            address=address_of(function),
             argument=0,
             inputs=inputs,
             outputs=outputs,
@@ -169,10 +170,6 @@ class PythonDoor:
         return advance_and_ask if names else advance
 
 
-def _address(function: Any) -> int:
-    return int(ctypes.cast(function, ctypes.c_void_p).value or 0)
-
-
 def _class_in(file: Path, name: str) -> Any:
     module = _module(file)
     found = getattr(module, name, None)
@@ -197,11 +194,6 @@ def _module(file: Path) -> ModuleType:
     return module
 
 
-def _keywords(made: Any) -> bool:
-    """Whether the parameters of a class are keywords of its constructor."""
-    return bool(_defaults(made))
-
-
 def _defaults(made: Any) -> dict[str, Value]:
     """Arguments of the constructor that have a default which can be set."""
     try:
@@ -211,32 +203,16 @@ def _defaults(made: Any) -> dict[str, Value]:
     return {a.name: a.default for a in arguments if isinstance(a.default, (bool, int, float, str))}
 
 
-def _parameters(made: Any) -> dict[str, Value]:
+def _parameters(made: Any) -> tuple[ParameterInfo, ...]:
     """Parameters of a class, with their defaults."""
-    if defaults := _defaults(made):
-        return defaults
+    return tuple(ParameterInfo(name, value) for name, value in (_defaults(made) or _attributes(made)).items())
+
+
+def _attributes(made: Any) -> dict[str, Value]:
+    """Public attributes of a class that can be set."""
     names = [name for name in dir(made) if not name.startswith("_") and name != "commands_voltages"]
     found = {name: getattr(made, name) for name in names}
     return {name: value for name, value in found.items() if isinstance(value, (bool, int, float, str))}
-
-
-def _checked(given: Mapping[str, Value], known: Mapping[str, Value]) -> dict[str, Value]:
-    return {name: _as_default(name, value, known) for name, value in given.items()}
-
-
-def _as_default(name: str, value: Value, known: Mapping[str, Value]) -> Value:
-    """Value of the type that the default has."""
-    if name not in known:
-        has = f"it has {', '.join(known)}" if known else "it has none"
-        near = did_you_mean(name, known)
-        raise DoorError(f"--set controller.{name}: the controller has no such parameter{near}; {has}")
-    kind = type(known[name])
-    if kind is float and isinstance(value, int) and not isinstance(value, bool):
-        return float(value)
-    if type(value) is not kind:
-        words = {bool: "true or false", int: "a whole number", float: "a number", str: "a word"}
-        raise DoorError(f"--set controller.{name}: {value!r} is not {words[kind]}")
-    return value
 
 
 def _make(made: Any, given: Mapping[str, Value], keywords: bool) -> Any:

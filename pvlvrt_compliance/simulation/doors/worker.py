@@ -95,7 +95,7 @@ def _do(folder: Path) -> None:
     try:
         answer = _answer(job, folder)
     except PvlvrtError as error:
-        answer = {"error": str(error), "in_run": isinstance(error, SimulationError)}
+        answer = {"error": str(error)}
     sys.stdout.flush()
     sys.stderr.flush()
     unfinished = folder / f"{ANSWER}.part"

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from pvlvrt_compliance.checks.results import Status
 from pvlvrt_compliance.profile import Profile
+from pvlvrt_compliance.results import Status
 from pvlvrt_compliance.scenario.sag import Sag
 
 RATED_KVA = 500.0

@@ -8,12 +8,12 @@ import pytest
 
 from edges import GENERATORS, Edge, Record
 from edges.edge import SHORT_STEP_S, hz
-from pvlvrt_compliance.checks.evaluate import CONNECTION_KINDS, REPEATED_RUNS
-from pvlvrt_compliance.checks.repeated_runs import judge_repeated_runs
-from pvlvrt_compliance.checks.results import Check, Status, TestResult
+from pvlvrt_compliance.checks.connection.repeated_runs import KIND, judge_repeated_runs
+from pvlvrt_compliance.checks.registry import judges_connection
+from pvlvrt_compliance.data.marks import marks_in
 from pvlvrt_compliance.profile import Profile, known_profiles, load_profile
-from pvlvrt_compliance.profile.provenance import marks_in
-from pvlvrt_compliance.profile.requirements import Requirement, Requirements
+from pvlvrt_compliance.profile.requirements import Requirement
+from pvlvrt_compliance.results import Status, TestResult, Verdict
 from pvlvrt_compliance.units import Nominal
 
 ON_DETECTION = {"reactive_current", "negative_sequence_current", "support_dynamics"}
@@ -75,7 +75,7 @@ def judging(case: Case) -> Profile:
     others = {}
     if case.kind == "negative_sequence_current" and not case.edge.alone:
         others["reactive_current"] = case.profile.requirements.reactive_current
-    requirements = Requirements(**(others | {case.kind: demand}))
+    requirements = type(case.profile.requirements)(**(others | {case.kind: demand}))
     wide = case.profile.conditions.no_load_tolerance_pu.model_copy(update={"value": 0.05})
     conditions = case.profile.conditions.model_copy(update={"no_load_tolerance_pu": wide})
     return case.profile.model_copy(update={"requirements": requirements, "conditions": conditions})
@@ -85,7 +85,7 @@ def key(case: Case) -> str:
     """The same for edges that are made from the same numbers."""
     profile = judging(case)
     detection = profile.detection if case.kind in ON_DETECTION else None
-    windows = profile.windows if case.kind not in CONNECTION_KINDS else None
+    windows = profile.windows if not judges_connection(case.kind) else None
     parts = (profile.requirements, windows, detection)
     numbers = [plain(part.model_dump(mode="json")) if part is not None else None for part in parts]
     return json.dumps([case.kind, case.edge.label, hz(profile), numbers], sort_keys=True)
@@ -141,7 +141,7 @@ def test_every_number_has_an_edge():
     """Each marked number of each requirement decides an edge, or stands in the list of those that cannot."""
     missing = []
     for profile, kind, demand in demands():
-        if kind == REPEATED_RUNS:
+        if kind == KIND:
             continue
         exercised = {name for edge in GENERATORS[kind](demand, profile) for name in edge.numbers}
         named = {name for name, _ in marks_in(demand)}
@@ -152,7 +152,7 @@ def test_every_number_has_an_edge():
         assert not exercised & idle
         missing += [f"{profile.id}: {kind}.{name}" for name in sorted(named - exercised - idle)]
     assert not missing
-    assert {kind for _, kind, _ in demands()} == {*GENERATORS, REPEATED_RUNS}
+    assert {kind for _, kind, _ in demands()} == {*GENERATORS, KIND}
 
 
 def test_what_cannot_have_an_edge_exists():
@@ -163,10 +163,10 @@ def test_what_cannot_have_an_edge_exists():
 
 def run(number: int, status: Status) -> TestResult:
     """A run of a row, with a verdict on its connection."""
-    return TestResult(id=f"run-{number}", status=status, checks=(Check(check="ride_through", status=status),))
+    return TestResult(id=f"run-{number}", status=status, checks=(Verdict(check="ride_through", status=status),))
 
 
-RULES = {(profile.id, demand) for profile, kind, demand in demands() if kind == REPEATED_RUNS}
+RULES = {(profile.id, demand) for profile, kind, demand in demands() if kind == KIND}
 
 
 @pytest.mark.parametrize("demand", [pytest.param(demand, id=name) for name, demand in sorted(RULES, key=str)])

@@ -148,7 +148,7 @@ def test_description(small, version):
     ("given", "reason"),
     [
         ({"gian": 1.0}, 'did you mean "gain"'),
-        ({"gain": 2.5}, "2.5 is not in its range, 0 to 2"),
+        ({"gain": 2.5}, "2.5 is out of range; 0 to 2 is allowed"),
         ({"gain": "much"}, "'much' is not a number"),
         ({"status": 1.5}, "1.5 is not a whole number"),
         ({"softly": 1}, "1 is not true or false"),

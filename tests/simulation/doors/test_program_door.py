@@ -157,7 +157,7 @@ def test_answers_that_do_not_fit(what, reason):
         ("silent", "(?s)status 0"),
         ("prints", "'Hello!', which is not a JSON object"),
         ("old", "version: "),
-        ("typo", "sampel_time_s: Extra inputs"),
+        ("typo", 'sampel_time_s: unknown key; did you mean "sample_time_s"'),
         ("raises", "(?s)status 1.*ZeroDivisionError"),
         ("refuses", "gave up: no licence"),
     ],
@@ -168,6 +168,23 @@ def test_bad_hello(what, reason):
         ForeignSimulator(program("json", what))
 
 
+def test_hello_is_told_in_the_words_of_files():
+    """All that is wrong with a hello is told at once, by key, with what is allowed and what was meant."""
+    ports = [{"name": "Va", "untt": "V"}, 3]
+    answer = {"version": 1, "mode": "text", "inputs": ports, "parameters": {"gain": {"value": 1, "minimun": 0}}}
+    with pytest.raises(DoorError) as caught:
+        hello_in(json.dumps(answer).encode())
+    head, *problems = str(caught.value).splitlines()
+    assert head == "its answer to the hello cannot be used: 5 problems"
+    assert problems == [
+        "  sample_time_s: missing",
+        "  mode: must be 'json' or 'binary', not 'text'",
+        '  inputs[0].untt: unknown key; did you mean "unit"?',
+        "  inputs[1].name: must be a text, not 3",
+        '  parameters.gain.minimun: unknown key; did you mean "minimum"?',
+    ]
+
+
 def test_not_ready():
     """A program may refuse to start."""
     with pytest.raises(SimulationError, match="gave up: not in this mood"):
@@ -176,7 +193,11 @@ def test_not_ready():
 
 @pytest.mark.parametrize(
     ("given", "reason"),
-    [({"gian": 1.0}, 'did you mean "gain"'), ({"gain": 3.0}, "not in its range, 0 to 2"), ({"gain": "x"}, "a number")],
+    [
+        ({"gian": 1.0}, 'did you mean "gain"'),
+        ({"gain": 3.0}, "out of range; 0 to 2 is allowed"),
+        ({"gain": "x"}, "a number"),
+    ],
 )
 def test_parameters(given, reason):
     """Parameters are checked against what the program says of them."""

@@ -5,7 +5,7 @@ import ctypes
 import numpy as np
 import pytest
 
-from pvlvrt_compliance.simulation.doors.base import DoorError, Setting, port_table
+from pvlvrt_compliance.simulation.doors.base import DoorError, port_table
 from pvlvrt_compliance.simulation.doors.library_door import LibraryDoor
 from pvlvrt_compliance.simulation.doors.library_file import Library
 from pvlvrt_compliance.simulation.doors.library_info import info_of, settings_of
@@ -18,7 +18,7 @@ from pvlvrt_compliance.units import Nominal
 
 pytestmark = pytest.mark.compiler
 
-SETTING = Setting(Nominal(), 750.0)
+NOMINAL = Nominal()
 LIMITS = {
     "of_char": (-128, 127),
     "of_int8": (-128, 127),
@@ -93,6 +93,8 @@ def test_defaults_and_ranges(types):
         ({"of_int16": 101}, "101 is out of range; 0 to 100 is allowed"),
         ({"of_int16": 1.5}, "1.5 is not a whole number"),
         ({"of_real64": "fast"}, "'fast' is not a number"),
+        ({"of_real32": 1e39}, "1e+39 is out of range"),
+        ({"of_char": "ab"}, "'ab' is not a whole number"),
         ({"of_int8": -1}, "out of range"),
         ({"of_reall64": 1.0}, 'no such parameter; did you mean "of_real64"'),
         ({"text": "a\0b"}, "NUL"),
@@ -121,7 +123,7 @@ def test_instances_have_their_own_globals(compiled):
     doors = [LibraryDoor(str(compiled("misbehaving.c")), {}) for _ in range(2)]
     counts = []
     for door in doors:
-        opened = door.open(SETTING)
+        opened = door.open(NOMINAL)
         for _ in range(3):
             FUNCTION(opened.address)(opened.argument)
         (calls,) = [e.byte for e in opened.outputs.elements if e.signal == len(opened.recorded) + 5]
@@ -133,7 +135,7 @@ def test_instances_have_their_own_globals(compiled):
 def test_parameters_that_the_library_changes_are_told(compiled):
     """Model_CheckParameters may change a parameter; that, and what it says, is noted."""
     door = LibraryDoor(str(compiled("misbehaving.c")), {"at_s": 66.0})
-    opened = door.open(SETTING)
+    opened = door.open(NOMINAL)
     assert FUNCTION(opened.first_address)(opened.argument) == 0
     assert list(opened.notes) == [
         "at_s was not to my liking",
@@ -147,7 +149,7 @@ class Driven:
 
     def __init__(self, library, in_python):
         self.door = LibraryDoor(str(library), {})
-        self.opened = self.door.open(SETTING)
+        self.opened = self.door.open(NOMINAL)
         self.table = port_table(self.opened.inputs)
         self.gather = in_python(gather)
         self.step(0, self.opened.hold_address)
@@ -199,7 +201,7 @@ def test_no_snapshot_without_states(compiled):
     """A library that keeps nothing in the arrays of the interface says so, and is refused."""
     door = LibraryDoor(str(compiled("misbehaving.c")), {})
     assert "no snapshot of it can be made" in door.describe().notes[0]
-    door.open(SETTING)
+    door.open(NOMINAL)
     with pytest.raises(DoorError, match="no snapshot"):
         door.snapshot()
     door.close()

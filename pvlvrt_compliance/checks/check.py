@@ -1,0 +1,124 @@
+"""What a check is: a class that judges one kind of requirement in the records of any test."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+from pvlvrt_compliance.profile.requirements.base import Requirement
+from pvlvrt_compliance.results import Band, Status, TestResult, Verdict
+
+if TYPE_CHECKING:
+    from pvlvrt_compliance.disturbance.model import Stretch
+    from pvlvrt_compliance.evidence.evidence import Evidence
+
+Scope = Literal["record", "stretch", "row"]
+"""What is judged: a record as a whole, each stretch between two steps of the voltage, or all runs of a row."""
+
+
+class Check(ABC):
+    """Judges one kind of requirement; its docstring says in a sentence what it judges.
+
+    A class attribute each: ``kind``, its name everywhere (profile key, JSON, JUnit); ``title``, for people;
+    ``requirement``, its data model; ``judges_connection``, whether it says if the inverter may stop: all others have
+    nothing to say of one that did. ``scope`` is that of the class it derives from: this one judges a record as a whole,
+    `StretchCheck` each stretch, `RowCheck` all runs of a row. Nothing else in the program knows a check by name.
+    """
+
+    kind: ClassVar[str]
+    title: ClassVar[str]
+    requirement: ClassVar[type[Requirement]]
+    scope: ClassVar[Scope] = "record"
+    judges_connection: ClassVar[bool] = False
+
+    @abstractmethod
+    def judge(self, requirement: Any, evidence: "Evidence") -> Verdict:
+        """Judge a record.
+
+        Parameters
+        ----------
+        requirement : Requirement
+            Of the type that ``requirement`` names, as the profile has it.
+        evidence : Evidence
+            The record; its series and windows.
+
+        Raises
+        ------
+        NotApplicable
+            When the code lets the inverter off; the text is the reason.
+        MeasurementError
+            When evidence is missing: `not_evaluated`.
+        """
+
+    def limits(self, requirement: Any, evidence: "Evidence") -> tuple[Band, ...]:  # noqa: ARG002
+        """What a figure draws of the requirement, in a record that it was judged in."""
+        return ()
+
+
+class StretchCheck(Check):
+    """Judges each stretch from one step of the voltage to the next; the worst verdict is reported."""
+
+    scope = "stretch"
+
+    @abstractmethod
+    def judge_stretch(self, requirement: Any, evidence: "Evidence", stretch: "Stretch") -> Verdict:
+        """Judge one stretch; parameters and errors as `judge`. One that is let off leaves the others judged."""
+
+    def judge(self, requirement: Any, evidence: "Evidence") -> Verdict:
+        """Judge all stretches that follow a step of the voltage.
+
+        Raises
+        ------
+        NotApplicable
+            When there is none, or each is let off; then with the reason of the first.
+        """
+        from pvlvrt_compliance.evidence.evidence import NotApplicable
+
+        verdicts, reasons = [], []
+        for stretch in evidence.voltage_stretches:
+            try:
+                verdicts.append(self.judge_stretch(requirement, evidence, stretch))
+            except NotApplicable as reason:
+                reasons.append(reason)
+        if verdicts:
+            return decisive(verdicts)
+        raise reasons[0] if reasons else NotApplicable("the voltage of the grid has no step that anything could follow")
+
+
+class RowCheck(Check):
+    """Judges all runs of a row of the test table together."""
+
+    scope = "row"
+
+    def judge(self, requirement: Any, evidence: "Evidence") -> Verdict:
+        """A row is judged by its results, never by one record."""
+        raise NotImplementedError(f"{self.kind} judges rows")
+
+    @abstractmethod
+    def further_runs_wanted(
+        self, requirement: Any, runs: Sequence[TestResult], further: Sequence[TestResult] = ()
+    ) -> int:
+        """How many more runs the rule asks for before it can be judged.
+
+        Parameters
+        ----------
+        runs : sequence of TestResult
+            The row's own, in order.
+        further : sequence of TestResult
+            Those that were asked for since.
+        """
+
+    @abstractmethod
+    def judge_row(self, requirement: Any, runs: Sequence[TestResult], further: Sequence[TestResult] = ()) -> Verdict:
+        """Judge the row by the results of its runs."""
+
+
+_WORST_FIRST = list(Status)
+
+
+def decisive(verdicts: Sequence[Verdict]) -> Verdict:
+    """The worst of some verdicts; of several that are equally bad the one with the least margin, then the first."""
+
+    def rank(verdict: Verdict) -> tuple[int, float]:
+        return _WORST_FIRST.index(verdict.status), float("inf") if verdict.margin is None else verdict.margin
+
+    return min(verdicts, key=rank)

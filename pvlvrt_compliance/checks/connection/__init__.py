@@ -1,0 +1,1 @@
+"""Checks of connection, one class a file, mirroring `profile/requirements/connection.py`."""

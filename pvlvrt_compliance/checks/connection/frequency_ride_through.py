@@ -1,0 +1,164 @@
+"""The inverter stays connected at the frequencies and through the rates of change that the code names."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from pvlvrt_compliance.checks.check import Check
+from pvlvrt_compliance.checks.connection.demand import Demand, judged_stay
+from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
+from pvlvrt_compliance.evidence.excursions import excursions, inside_of, time_spent_s
+from pvlvrt_compliance.evidence.frequency import (
+    frequency_hz,
+    held_in_words,
+    known_frequency_hz,
+    largest_deviation,
+)
+from pvlvrt_compliance.measure.frequency import rocof_hz_s
+from pvlvrt_compliance.profile.curves import Side
+from pvlvrt_compliance.profile.requirements import FrequencyRideThrough
+from pvlvrt_compliance.profile.tables import FrequencyBand
+from pvlvrt_compliance.results import Status, Verdict
+from pvlvrt_compliance.waveforms.container import Samples
+
+KIND = "frequency_ride_through"
+
+
+class _Stop(NamedTuple):
+    """When the inverter stopped for good, and how."""
+
+    at_s: float
+    how: str
+
+
+class FrequencyRideThroughCheck(Check):
+    """Judges whether the inverter feeds for as long as bands of the frequency and its rate of change demand."""
+
+    kind = KIND
+    title = "Ride-through of frequency disturbances"
+    requirement = FrequencyRideThrough
+    judges_connection = True
+
+    def judge(self, requirement: FrequencyRideThrough, evidence: Evidence) -> Verdict:
+        """Judge a trip, or a blocked bridge, by the time in each band (or further out) and the rate of change.
+
+        Each stay beyond a band counts from its own beginning. A frequency or a rate within the accuracy of the
+        measurement of a limit is on it (`frequency_accuracy_hz`; for the rate, both ends of its window).
+
+        Raises
+        ------
+        NotApplicable
+            When the frequency stays near nominal, or the inverter tripped while the voltage was not normal.
+        MeasurementError
+            When the voltages are missing, or the record does not say whether the breaker is closed.
+        """
+        worst_hz, worst_at_s = largest_deviation(evidence)
+        frequency = frequency_hz(evidence)
+        rate = _rate(requirement, evidence)
+        fastest, held = _rate_in_words(requirement, rate), held_in_words(evidence)
+        seen = f"furthest {worst_hz:.2f} Hz at {worst_at_s:.3f} s{fastest}{held}"
+        demands = [*_band_releases(requirement, evidence, frequency), *_rate_releases(requirement, evidence, rate)]
+        release = min(demands, key=lambda demand: demand.until_s, default=None)
+        stop = _stop(evidence)
+        if stop is None:
+            always = _always(requirement, evidence)
+            return judged_stay(
+                KIND,
+                requirement,
+                Status.PASS,
+                f"connected throughout; {seen}",
+                always,
+                stopped_at_s=evidence.waveforms.end_s,
+            )
+        if not evidence.disturbance.is_normal(stop.at_s):
+            raise NotApplicable(f"{stop.how} while the voltage was not normal, which is judged by ride_through")
+        if release is not None and stop.at_s >= release.until_s:
+            message = f"{release.by} demands {release.stay_s:.3f} s, connected for {stop.at_s - release.since_s:.2f} s"
+            return judged_stay(
+                KIND, requirement, Status.NOT_APPLICABLE, f"{message}; {seen}", release, stopped_at_s=stop.at_s
+            )
+        demand, words = _always(requirement, evidence), "every frequency and rate up to then demands connection"
+        if release is not None and release.since_s <= stop.at_s:
+            demand, words = release, f"{release.by} demands {release.stay_s:.3f} s"
+        message = (
+            f"{stop.how} at {stop.at_s:.3f} s, {stop.at_s - demand.since_s:.3f} s after {demand.since_s:.3f} s; {words}"
+        )
+        return judged_stay(KIND, requirement, Status.FAIL, f"{message}; {seen}", demand, stopped_at_s=stop.at_s)
+
+
+def _stop(evidence: Evidence) -> _Stop | None:
+    if evidence.disconnected_at_s is not None:
+        return _Stop(evidence.disconnected_at_s, "tripped")
+    return None if evidence.blocked_at_s is None else _Stop(evidence.blocked_at_s, "bridge blocked")
+
+
+def _always(requirement: FrequencyRideThrough, evidence: Evidence) -> Demand:
+    start_s = evidence.disturbance.start_s
+    return Demand(start_s, evidence.waveforms.end_s - start_s, "", requirement.bands.clause, requirement.bands)
+
+
+def _band_releases(requirement: FrequencyRideThrough, evidence: Evidence, frequency: Samples) -> list[Demand]:
+    """What lets the inverter go: a band whose time is over, and frequencies beyond all bands at once."""
+    rows = requirement.bands.rows
+    nominal_hz = evidence.nominal.frequency_hz
+    low_hz, high_hz = rows[0].frequency_hz[0], rows[-1].frequency_hz[1]
+    found = [
+        _beyond(requirement, evidence, frequency, Side.LOW, low_hz, 0.0, f"below {low_hz:g} Hz the code"),
+        _beyond(requirement, evidence, frequency, Side.HIGH, high_hz, 0.0, f"above {high_hz:g} Hz the code"),
+    ]
+    for row in rows:
+        if row.ride_s is not None:
+            side = Side.LOW if row.frequency_hz[1] <= nominal_hz else Side.HIGH
+            near_hz = row.frequency_hz[1 if side is Side.LOW else 0]
+            found.append(_beyond(requirement, evidence, frequency, side, near_hz, row.ride_s, _band_in_words(row)))
+    return [demand for demand in found if demand is not None]
+
+
+def _band_in_words(row: FrequencyBand) -> str:
+    return f"the band {row.frequency_hz[0]:g} to {row.frequency_hz[1]:g} Hz"
+
+
+def _beyond(
+    requirement: FrequencyRideThrough,
+    evidence: Evidence,
+    frequency: Samples,
+    side: Side,
+    edge_hz: float,
+    ride_s: float,
+    by: str,
+) -> Demand | None:
+    sign = 1 if side is Side.LOW else -1
+    found = excursions(
+        sign * (edge_hz - frequency) > evidence.thresholds.frequency_accuracy_hz.value,
+        evidence.t_s,
+        gap_s=1 / evidence.frequency_hz,
+    )
+    spent_s = time_spent_s(found, evidence.t_s, None)
+    free = np.flatnonzero(inside_of(found, evidence.t_s) & (spent_s >= ride_s))
+    if not len(free):
+        return None
+    return Demand(float(evidence.t_s[free[0]]) - ride_s, ride_s, by, requirement.bands.clause, requirement.bands)
+
+
+def _rate(requirement: FrequencyRideThrough, evidence: Evidence) -> Samples | None:
+    """Rate of change between two frequencies that are known: after one that is held, the first known one is no step."""
+    if requirement.rocof_window_s is None:
+        return None
+    return np.abs(rocof_hz_s(evidence.t_s, known_frequency_hz(evidence), requirement.rocof_window_s.value))
+
+
+def _rate_releases(requirement: FrequencyRideThrough, evidence: Evidence, rate: Samples | None) -> list[Demand]:
+    if rate is None or requirement.rocof_hz_s is None or requirement.rocof_window_s is None:
+        return []
+    limit = requirement.rocof_hz_s
+    too_fast = np.flatnonzero(
+        rate > limit.value + 2 * evidence.thresholds.frequency_accuracy_hz.value / requirement.rocof_window_s.value
+    )
+    by = f"beyond {limit.value:g} Hz/s the code"
+    return [Demand(float(evidence.t_s[too_fast[0]]), 0.0, by, requirement.bands.clause, limit)] if len(too_fast) else []
+
+
+def _rate_in_words(requirement: FrequencyRideThrough, rate: Samples | None) -> str:
+    if rate is None or requirement.rocof_window_s is None or not np.isfinite(rate).any():
+        return ""
+    return f", fastest {np.nanmax(rate):.2f} Hz/s over {requirement.rocof_window_s.value:g} s"

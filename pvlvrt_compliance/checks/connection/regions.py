@@ -1,0 +1,113 @@
+"""Limits of the voltage that are regions with modes: staying connected, ceasing and tripping there."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from pvlvrt_compliance.checks.connection.demand import Demand
+from pvlvrt_compliance.checks.connection.envelopes import Limit
+from pvlvrt_compliance.evidence.evidence import Evidence, require_finite
+from pvlvrt_compliance.evidence.excursions import excursions, inside_of, time_spent_s
+from pvlvrt_compliance.evidence.series import Mask
+from pvlvrt_compliance.evidence.stretches import settled_pu, settling_s
+from pvlvrt_compliance.evidence.voltages import NAMES, voltage_quantity_pu
+from pvlvrt_compliance.measure.windows import Span
+from pvlvrt_compliance.profile.curves import LARGEST_LEVEL_PU, Side
+from pvlvrt_compliance.profile.regions import LinearTime, Region, RegionTable
+from pvlvrt_compliance.waveforms.container import Samples
+
+
+class Visit(NamedTuple):
+    """A region in one record."""
+
+    region: Region
+    voltage_pu: Samples  # of the quantity that the region speaks of
+    beyond: tuple[Span, ...]  # in it or in a worse one
+    within: tuple[Span, ...]  # in it alone
+
+    @property
+    def name(self) -> str:
+        """The region in words."""
+        low, high = self.region.voltage_pu
+        return f"the region {low:g} to {high:g} pu ({self.region.mode.replace('_', ' ')})"
+
+
+def visits(table: RegionTable, tolerance_pu: float, evidence: Evidence) -> list[Visit]:
+    """What a record has of each region but the continuous one; above the last the inverter may trip.
+
+    A voltage less than the tolerance beyond the edge of a region is not in it, nor is what a one-cycle voltage shows
+    of the other side after a step.
+
+    Raises
+    ------
+    MeasurementError
+        When a voltage is missing or not finite.
+    """
+    return [visit for side in Side for visit in _visits_of(table, side, tolerance_pu, evidence)]
+
+
+def region_limits(table: RegionTable, found: list[Visit], evidence: Evidence) -> list[Limit]:
+    """The limit that each region is to the record."""
+    return [_limit(table, visit, evidence) for visit in found]
+
+
+def _visits_of(table: RegionTable, side: Side, tolerance_pu: float, evidence: Evidence) -> Iterator[Visit]:
+    quantity = table.low_quantity if side is Side.LOW else table.high_quantity
+    voltage_pu = voltage_quantity_pu(evidence, quantity)
+    after_start = evidence.between(evidence.disturbance.start_s, evidence.waveforms.end_s)
+    require_finite(voltage_pu[after_start], NAMES[quantity], evidence.t_s[after_start])
+    from_mild_to_worse = _by_distance(table, side)
+    masks = [_beyond(region, side, voltage_pu, tolerance_pu) for region in from_mild_to_worse]
+    nowhere = np.zeros(len(voltage_pu), dtype=np.bool_)
+    for region, beyond, worse in zip(from_mild_to_worse, masks, [*masks[1:], nowhere], strict=True):
+        yield Visit(region, voltage_pu, _stretches(beyond, evidence), _stretches(beyond & ~worse, evidence))
+
+
+def _by_distance(table: RegionTable, side: Side) -> list[Region]:
+    """Regions of a side, the one next to normal operation first."""
+    regions = [row for row in table.rows if row.mode != "continuous" and table.side_of(row) is side]
+    if side is Side.LOW:
+        return regions[::-1]
+    top_pu = table.rows[-1].voltage_pu[1]
+    above = Region(voltage_pu=(top_pu, max(LARGEST_LEVEL_PU, 2 * top_pu)), mode="may_trip")
+    return [*regions, above]
+
+
+def _beyond(region: Region, side: Side, voltage_pu: Samples, tolerance_pu: float) -> Mask:
+    low, high = region.voltage_pu
+    return voltage_pu < high - tolerance_pu if side is Side.LOW else voltage_pu > low + tolerance_pu
+
+
+def _stretches(mask: Mask, evidence: Evidence) -> tuple[Span, ...]:
+    cycle_s = 1 / evidence.frequency_hz
+    steps_s = evidence.disturbance.voltage_steps_s
+    return tuple(excursions(mask, evidence.t_s, steps_s, lag_s=settling_s(evidence), gap_s=cycle_s))
+
+
+def _limit(table: RegionTable, visit: Visit, evidence: Evidence) -> Limit:
+    def demand(since_s: float, stay_s: float) -> Demand:
+        return Demand(since_s, stay_s, visit.name, table.clause, table)
+
+    def demand_at(at_s: float) -> Demand | None:
+        settled = settled_pu(evidence, visit.voltage_pu, at_s)
+        begun_s = next((begin_s for begin_s, end_s in visit.beyond if begin_s <= at_s < end_s), None)
+        if settled is None or begun_s is None:
+            return None
+        return demand(begun_s, float(_stay_s(visit.region, np.array([settled]))[0]))
+
+    stay_s = _stay_s(visit.region, visit.voltage_pu)
+    spent_s = time_spent_s(list(visit.beyond), evidence.t_s, table.cumulative_window_s)
+    free = np.flatnonzero(inside_of(list(visit.beyond), evidence.t_s) & (spent_s >= stay_s))
+    if not len(free):
+        return Limit(None, demand_at)
+    first = free[0]
+    return Limit(demand(float(evidence.t_s[first] - stay_s[first]), float(stay_s[first])), demand_at)
+
+
+def _stay_s(region: Region, voltage_pu: Samples) -> Samples:
+    """How long the inverter must stay connected at voltages in a region or beyond it (s)."""
+    if not isinstance(region.ride_s, LinearTime):
+        return np.full(len(voltage_pu), region.ride_through_s(region.voltage_pu[0]))
+    time = region.ride_s
+    return time.s + time.slope_s_per_pu * (np.clip(voltage_pu, *region.voltage_pu) - time.at_pu)

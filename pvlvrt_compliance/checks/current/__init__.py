@@ -1,0 +1,1 @@
+"""Checks of current, one class a file, mirroring `profile/requirements/current.py`."""

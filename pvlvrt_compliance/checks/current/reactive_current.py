@@ -1,0 +1,251 @@
+"""Additional reactive current in proportion to the change of a sequence's voltage: delta i = K f(delta u).
+
+Signs are those of `measure.power`: reactive current is positive where it pulls the voltage of its sequence back, up in
+the positive sequence, down in the negative one. delta u therefore counts what V+ has fallen by and what V- has risen
+by, so that the one formula holds for both, and for a swell too, where all of it is negative.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from pvlvrt_compliance.checks.check import Check
+from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
+from pvlvrt_compliance.data.marks import Marked
+from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require_finite, required
+from pvlvrt_compliance.measure.quantities import WindowMeasurements
+from pvlvrt_compliance.measure.windows import Span
+from pvlvrt_compliance.profile.requirements import ReactiveCurrent
+from pvlvrt_compliance.profile.requirements.current import DeadBandMode
+from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.waveforms.container import Samples
+
+
+class Sequence(NamedTuple):
+    """One of the two sequences that support is demanded of."""
+
+    kind: str
+    name: str
+    nominal_pu: float
+
+
+POSITIVE = Sequence("reactive_current", "positive", 1.0)
+NEGATIVE = Sequence("negative_sequence_current", "negative", 0.0)
+
+
+class _Asked(NamedTuple):
+    """What the requirement asks of one sequence (pu)."""
+
+    delta_u_pu: float  # what the voltage moved by, as a sag moves it
+    clipped_pu: float  # additional reactive current
+    clipped: bool
+
+
+class _Band(NamedTuple):
+    """Where the additional reactive current must lie (pu)."""
+
+    low: float
+    high: float
+    words: str
+
+
+class ReactiveCurrentCheck(Check):
+    """Judges the reactive current that the inverter adds to raise V+ in a sag, against K times what V+ fell by."""
+
+    kind = POSITIVE.kind
+    title = "Reactive current of the positive sequence"
+    requirement = ReactiveCurrent
+
+    def judge(self, requirement: ReactiveCurrent, evidence: Evidence) -> Verdict:
+        """Judge the positive sequence; see `judge_sequence`."""
+        return judge_sequence(POSITIVE, requirement, evidence)
+
+
+class NegativeSequenceCurrentCheck(Check):
+    """Judges the reactive current that the inverter adds to lower V- in a sag, against K times what V- rose by."""
+
+    kind = NEGATIVE.kind
+    title = "Reactive current of the negative sequence"
+    requirement = ReactiveCurrent
+
+    def judge(self, requirement: ReactiveCurrent, evidence: Evidence) -> Verdict:
+        """Judge the negative sequence; see `judge_sequence`."""
+        return judge_sequence(NEGATIVE, requirement, evidence)
+
+
+def judge_sequence(sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence) -> Verdict:
+    """Judge the mean additional reactive current of a sequence during the sag, less its mean before.
+
+    Raises
+    ------
+    NotApplicable
+        When the sag is too short for a window, when the bridge is blocked and may be, or when the sequence has no
+        voltage to tell reactive current by.
+    MeasurementError
+        When a voltage or a current cannot be measured.
+    """
+    window = evidence.during()
+    _let_off(sequence, requirement, evidence, window)
+    asked = _asked(sequence, requirement, evidence, window)
+    band = _band(asked, requirement, bool(evidence.is_event(np.asarray(required(window.voltage_positive_pu, "V+")))))
+    t_s, additional = additional_current(sequence, evidence, Span(window.start_s, window.end_s))
+    measured = mean_additional(sequence, evidence, window)
+    to_high, to_low = band.high - measured, measured - band.low
+    at_high = to_high < to_low
+    return judged(
+        sequence.kind,
+        requirement,
+        pass_or_fail(min(to_high, to_low) >= 0),
+        f"additional reactive current of the {sequence.name} sequence {measured:+.3f} pu, mean over "
+        f"{window.start_s:.3f} s to {window.end_s:.3f} s; {band.words}; band {band.low:+.3f} to {band.high:+.3f} pu",
+        measured=measured,
+        limit=band.high if at_high else band.low,
+        margin=min(to_high, to_low),
+        unit="pu",
+        at_s=t_s[additional.argmax() if at_high else additional.argmin()],
+        rests_on=_rests_on(requirement, asked, is_more=at_high == (asked.delta_u_pu >= 0)),
+    )
+
+
+def _let_off(sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence, window: WindowMeasurements) -> None:
+    v_positive = required(window.voltage_positive_pu, "V+")
+    allowed_below = requirement.blocking_allowed_below_pu.value
+    if v_positive < allowed_below and is_blocked(evidence, window):
+        raise NotApplicable(
+            f"the bridge is blocked at V+ = {v_positive:.3f} pu, which is allowed below {allowed_below:g} pu"
+        )
+    voltage = _voltage(sequence, window)
+    if voltage < evidence.thresholds.least_sequence_pu.value:
+        raise NotApplicable(
+            f"the {sequence.name} sequence of the voltage is {voltage:.3f} pu: too little to tell reactive current by"
+        )
+
+
+def is_blocked(evidence: Evidence, window: WindowMeasurements) -> bool:
+    """Whether no phase carries current for a cycle somewhere in the window."""
+    amplitudes = evidence.current_phase_pu[:, evidence.between(window.start_s, window.end_s)]
+    return bool((amplitudes < evidence.blocked_below_pu).all(axis=0).any())
+
+
+def _voltage(sequence: Sequence, window: WindowMeasurements) -> float:
+    if sequence is POSITIVE:
+        return required(window.voltage_positive_pu, "V+")
+    return required(window.voltage_negative_pu, "V-")
+
+
+def _reactive_series(sequence: Sequence, evidence: Evidence) -> Samples:
+    current = evidence.current_positive_pu if sequence is POSITIVE else evidence.current_negative_pu
+    return current.reactive
+
+
+def reactive_before(sequence: Sequence, evidence: Evidence) -> float:
+    """Mean reactive current of a sequence in the window before the sag (pu).
+
+    Raises
+    ------
+    MeasurementError
+        When it cannot be measured.
+    """
+    before = evidence.before()
+    if _voltage(sequence, before) < evidence.thresholds.least_sequence_pu.value:
+        return 0.0  # without voltage there is no reactive current
+    return _mean_reactive(sequence, evidence, before)
+
+
+def mean_additional(sequence: Sequence, evidence: Evidence, window: WindowMeasurements) -> float:
+    """Mean reactive current of a sequence in a window less its mean before the sag (pu).
+
+    Raises
+    ------
+    MeasurementError
+        When one of them cannot be measured.
+    """
+    return _mean_reactive(sequence, evidence, window) - reactive_before(sequence, evidence)
+
+
+def _mean_reactive(sequence: Sequence, evidence: Evidence, window: WindowMeasurements) -> float:
+    inside = evidence.between(window.start_s, window.end_s)
+    current = _reactive_series(sequence, evidence)[inside]
+    require_finite(current, "the reactive current", evidence.t_s[inside])
+    return float(np.average(current, weights=evidence.step_s[inside]))
+
+
+def additional_current(sequence: Sequence, evidence: Evidence, span: Span) -> tuple[Samples, Samples]:
+    """Instants of a span (s), both ends included, and the reactive current there less its mean before the sag (pu).
+
+    Raises
+    ------
+    MeasurementError
+        When one of them cannot be measured.
+    """
+    inside = evidence.between(*span)
+    t_s = evidence.t_s[inside]
+    current = require_finite(_reactive_series(sequence, evidence)[inside], "the reactive current", t_s)
+    return t_s, current - reactive_before(sequence, evidence)
+
+
+def _band(asked: _Asked, requirement: ReactiveCurrent, event: bool) -> _Band:
+    """Around the demand, from tolerance to tolerance; ``tolerance_plus_pu`` is on the side of more support.
+
+    Above the threshold of detection there is no fault and nothing is demanded (NTS 631, 5.11.2.2.4: its windows count
+    from V+ < 0.85). Nor is support forbidden there: an inverter that follows K without a dead band is no worse than one
+    that waits for the threshold. So the band then reaches from zero to the demand, and beyond both by a tolerance.
+    """
+    below, above = requirement.tolerance_minus_pu.value, requirement.tolerance_plus_pu.value
+    if asked.delta_u_pu < 0:
+        below, above = above, below
+    demand = asked.clipped_pu
+    words = f"{demand:+.3f} pu for a change of the voltage by {asked.delta_u_pu:+.3f} pu"
+    if event:
+        return _Band(demand - below, demand + above, f"demanded are {words}")
+    words = f"without a voltage event nothing is demanded, allowed are {words}"
+    return _Band(min(demand, 0.0) - below, max(demand, 0.0) + above, words)
+
+
+def _asked(sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence, window: WindowMeasurements) -> _Asked:
+    """Demand on a sequence, clipped together with that on the other one where the profile makes one.
+
+    The reactive currents of both sequences, with what flowed before the sag, may add up to ``limit_pu``: their
+    amplitudes add up in the worst phase. Beyond it both shrink in the same proportion.
+    """
+    delta_u, before, demand = _unclipped(sequence, requirement, evidence, window)
+    total = abs(before + demand)
+    other = NEGATIVE if sequence is POSITIVE else POSITIVE
+    of_other = evidence.requirements.of_kind(other.kind) if evidence.requirements is not None else None
+    if of_other is not None:
+        _, other_before, other_demand = _unclipped(other, of_other, evidence, window)
+        total += abs(other_before + other_demand)
+    if total <= requirement.limit_pu.value:
+        return _Asked(delta_u, demand, clipped=False)
+    return _Asked(delta_u, requirement.limit_pu.value / total * (before + demand) - before, clipped=True)
+
+
+def _unclipped(
+    sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence, window: WindowMeasurements
+) -> tuple[float, float, float]:
+    """Change of the voltage, reactive current before the sag, and K f(delta u) (pu)."""
+    from_nominal = requirement.reference.value == "nominal"
+    reference = sequence.nominal_pu if from_nominal else _voltage(sequence, evidence.before())
+    change = reference - _voltage(sequence, window)
+    delta_u = change if sequence is POSITIVE else -change
+    k = evidence.k_factor or requirement.k.value
+    demand = k * beyond_dead_band(delta_u, requirement.dead_band_pu.value, requirement.dead_band_mode.value)
+    return delta_u, reactive_before(sequence, evidence), demand
+
+
+def beyond_dead_band(delta_u_pu: float, dead_band_pu: float, mode: DeadBandMode) -> float:
+    """Return f(delta u) of the three readings of a dead band (pu)."""
+    if mode == "none":
+        return delta_u_pu
+    exceeding = max(abs(delta_u_pu) - dead_band_pu, 0.0)
+    if mode == "shift":
+        return math.copysign(exceeding, delta_u_pu)
+    return delta_u_pu if exceeding > 0 else 0.0
+
+
+def _rests_on(requirement: ReactiveCurrent, asked: _Asked, is_more: bool) -> tuple[Marked, ...]:
+    """The numbers that decided; ``is_more``: at the edge of more support than demanded."""
+    tolerance = requirement.tolerance_plus_pu if is_more else requirement.tolerance_minus_pu
+    shape = (requirement.k, requirement.dead_band_pu, requirement.dead_band_mode, requirement.reference)
+    return (*shape, tolerance, *((requirement.limit_pu,) if asked.clipped else ()))

@@ -1,0 +1,1 @@
+"""Checks of power, one class a file, mirroring `profile/requirements/power.py`."""

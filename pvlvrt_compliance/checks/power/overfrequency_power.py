@@ -1,0 +1,84 @@
+"""Active power falls with the frequency above a threshold: LFSM-O."""
+
+import numpy as np
+
+from pvlvrt_compliance.checks.check import Check
+from pvlvrt_compliance.checks.verdicts import judged_at_most
+from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require_finite
+from pvlvrt_compliance.evidence.excursions import excursions
+from pvlvrt_compliance.evidence.frequency import frequency_hz
+from pvlvrt_compliance.evidence.series import Mask
+from pvlvrt_compliance.profile.requirements import OverfrequencyPower
+from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.waveforms.container import Samples
+
+KIND = "overfrequency_power"
+
+
+class OverfrequencyPowerCheck(Check):
+    """Judges how far P is from the droop that it must follow while the frequency is above a threshold."""
+
+    kind = KIND
+    title = "Active power at over-frequency"
+    requirement = OverfrequencyPower
+
+    def judge(self, requirement: OverfrequencyPower, evidence: Evidence) -> Verdict:
+        """Judge the one-cycle mean of P wherever the frequency has been above the threshold for the time of activation.
+
+        P must be P_before (1 - (f - threshold) / (droop f_nominal)), not below 0, within the tolerance on either side.
+        Reports the instant that lies furthest off.
+
+        Raises
+        ------
+        NotApplicable
+            When the frequency never exceeds the threshold, or not for long enough.
+        MeasurementError
+            When P or the frequency cannot be measured.
+        """
+        frequency = frequency_hz(evidence)
+        active = _active(requirement, evidence, frequency)
+        t_s = evidence.t_s[active]
+        power_kw = require_finite(evidence.active_power_kw[active], "P", t_s)
+        wanted_kw = demanded_kw(requirement, evidence, frequency[active])
+        off_kw = np.abs(power_kw - wanted_kw)
+        worst = int(off_kw.argmax())
+        limit_kw = requirement.tolerance_fraction.value * evidence.nominal.apparent_power_kva
+        return judged_at_most(
+            KIND,
+            requirement,
+            f"P is {power_kw[worst]:.1f} kW at {frequency[active][worst]:.3f} Hz, {off_kw[worst]:.1f} kW from the "
+            f"{wanted_kw[worst]:.1f} kW that the droop asks for; {limit_kw:.1f} kW is allowed",
+            measured=off_kw[worst],
+            limit=limit_kw,
+            unit="kW",
+            at_s=t_s[worst],
+            rests_on=(
+                requirement.threshold_hz,
+                requirement.droop_fraction,
+                requirement.activation_s,
+                requirement.tolerance_fraction,
+            ),
+        )
+
+
+def demanded_kw(requirement: OverfrequencyPower, evidence: Evidence, frequency: Samples) -> Samples:
+    """Power that the droop asks for at frequencies above the threshold (kW), shape of ``frequency`` (Hz)."""
+    above_hz = frequency - requirement.threshold_hz.value
+    share = 1 - above_hz / (requirement.droop_fraction.value * evidence.nominal.frequency_hz)
+    demanded: Samples = evidence.power_before_kw * np.maximum(share, 0.0)
+    return demanded
+
+
+def _active(requirement: OverfrequencyPower, evidence: Evidence, frequency: Samples) -> Mask:
+    threshold, activation_s = requirement.threshold_hz.value, requirement.activation_s.value
+    found = excursions(frequency > threshold, evidence.t_s)
+    if not found:
+        raise NotApplicable(f"the frequency never exceeds {threshold:g} Hz")
+    active = np.zeros(len(evidence.t_s), dtype=np.bool_)
+    for begin_s, end_s in found:
+        active |= (evidence.t_s > begin_s + activation_s) & (evidence.t_s < end_s)
+    if not active.any():
+        raise NotApplicable(
+            f"the frequency exceeds {threshold:g} Hz for less than the {activation_s:g} s of activation"
+        )
+    return active

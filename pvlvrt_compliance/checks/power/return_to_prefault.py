@@ -1,0 +1,76 @@
+"""At the end of the record the inverter feeds what it fed before the disturbance."""
+
+import math
+
+from pvlvrt_compliance.checks.check import Check
+from pvlvrt_compliance.checks.parts import Part, by_margin, judged_by_parts
+from pvlvrt_compliance.data.marks import Number
+from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, required
+from pvlvrt_compliance.profile.requirements import ReturnToPrefault
+from pvlvrt_compliance.results import Verdict
+
+KIND = "return_to_prefault"
+
+
+class ReturnToPrefaultCheck(Check):
+    """Judges how far P and Q at the end of the record are from what they were before the disturbance."""
+
+    kind = KIND
+    title = "Return to the power before the fault"
+    requirement = ReturnToPrefault
+
+    def judge(self, requirement: ReturnToPrefault, evidence: Evidence) -> Verdict:
+        """Judge mean P and Q of the window `after` against the window `before`; reports the one with the least margin.
+
+        Raises
+        ------
+        NotApplicable
+            When the test itself ends elsewhere: another irradiance, voltage or frequency.
+        MeasurementError
+            When P or Q cannot be measured, or the record has no window after the disturbance.
+        """
+        _require_same_conditions(evidence)
+        return judged_by_parts(KIND, requirement, _parts(requirement, evidence), nearest=by_margin)
+
+
+def _parts(requirement: ReturnToPrefault, evidence: Evidence) -> list[Part]:
+    return [
+        _part("P", "kW", *_before_and_after(evidence, "active_power_kw"), requirement.active_fraction, evidence),
+        _part(
+            "Q", "kvar", *_before_and_after(evidence, "reactive_power_kvar"), requirement.reactive_fraction, evidence
+        ),
+    ]
+
+
+def _part(name: str, unit: str, before: float, after: float, limit: Number, evidence: Evidence) -> Part:
+    window = evidence.measurements.after
+    return Part(
+        what=f"{name} is {after:.1f} {unit} at the end and was {before:.1f} {unit} before the disturbance, distance in "
+        "fractions of rated power",
+        measured=abs(after - before) / evidence.nominal.apparent_power_kva,
+        limit=limit.value,
+        unit="pu",
+        at_s=window.start_s if window else evidence.waveforms.end_s,
+        rests_on=(limit,),
+    )
+
+
+def _before_and_after(evidence: Evidence, name: str) -> tuple[float, float]:
+    before, after = evidence.measurements.before, evidence.measurements.after
+    what = "P" if name.startswith("active") else "Q"
+    return (
+        required(getattr(before, name, None), f"{what} before the disturbance"),
+        required(getattr(after, name, None), f"{what} at the end of the record"),
+    )
+
+
+def _require_same_conditions(evidence: Evidence) -> None:
+    grid = evidence.disturbance
+    if grid.irradiance_w_m2 is not None and not math.isclose(*grid.irradiance_w_m2):
+        raise NotApplicable("the irradiance at the end is not that of the beginning")
+    if not grid.is_normal(evidence.waveforms.end_s if grid.record_end_s is None else grid.record_end_s):
+        raise NotApplicable("the voltage does not come back in this test")
+    before, after = evidence.measurements.before, evidence.measurements.after
+    first, last = (window.frequency_hz if window else None for window in (before, after))
+    if first is not None and last is not None and abs(last - first) > evidence.thresholds.frequency_deviation_hz.value:
+        raise NotApplicable(f"the frequency ends at {last:.2f} Hz and began at {first:.2f} Hz")

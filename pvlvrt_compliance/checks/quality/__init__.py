@@ -1,0 +1,1 @@
+"""Checks of quality, one class a file, mirroring `profile/requirements/quality.py`."""

@@ -1,0 +1,144 @@
+"""What the grid did, in words: what a scenario asked of grid and weather, and the state that a stretch is in."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from pvlvrt_compliance.disturbance.model import Fact, Kind, Voltage
+from pvlvrt_compliance.scenario.events import (
+    Event,
+    FrequencyRamp,
+    FrequencyStep,
+    FurtherSag,
+    GridStrength,
+    Harmonic,
+    Irradiance,
+    PhaseJump,
+    Recording,
+    VoltageProfile,
+)
+from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.scenario.scenario import Scenario
+
+NO_DISTURBANCE = "no disturbance"
+
+
+def state_in_words(kind: Kind, first: Voltage, last: Voltage | None = None, other_hz: float | None = None) -> str:
+    """What holds in a stretch in which nothing begins: its voltage, and a frequency other than the usual one (Hz)."""
+    at = "" if other_hz is None else f" at {other_hz:.6g} Hz"
+    if kind == "normal":
+        return f"normal voltage{at}" if at else "normal grid"
+    positive, negative = f"V+ {first.positive_pu:.3f}", f"V- {first.negative_pu:.3f}"
+    if last is not None:
+        positive, negative = f"{positive} to {last.positive_pu:.3f}", f"{negative} to {last.negative_pu:.3f}"
+    return f"{kind}: {positive} pu, {negative} pu{at}"
+
+
+def in_words(scenario: Scenario) -> str:
+    """Sag and events in one line."""
+    sag = [describe_sag(scenario.sag)] if _is_something(scenario.sag) else []
+    return "; ".join([*sag, *(f"{fact.name} {fact.text}" for fact in map(_event, scenario.events))]) or NO_DISTURBANCE
+
+
+def facts_of(scenario: Scenario) -> Iterator[Fact]:
+    """What there is to know of a scenario, one thing a fact: the disturbance first, then grid and weather."""
+    if _is_something(scenario.sag) or not scenario.events:
+        yield Fact(name="turn" if _is_turn(scenario.sag) else "sag", text=describe_sag(scenario.sag))
+    yield from map(_event, scenario.events)
+    yield Fact(name="duration", text=_seconds(scenario.duration_s))
+    yield Fact(name="point on wave", text=f"{scenario.point_on_wave_deg:.6g} °")
+    yield Fact(name="grid frequency", text=f"{scenario.frequency_hz:.6g} Hz")
+    yield Fact(name="grid", text=_grid(scenario.scr, scenario.xr))
+    if scenario.vector_group is not None:
+        yield Fact(name="beyond a transformer", text=scenario.vector_group)
+    yield Fact(name="irradiance", text=f"{scenario.irradiance_w_m2:.6g} W/m²")
+    yield Fact(name="cell temperature", text=f"{scenario.cell_temperature_c:.6g} °C")
+    if scenario.reactive_power_pu:
+        yield Fact(name="reactive power set", text=f"{scenario.reactive_power_pu:.6g} pu")
+    yield Fact(name="record before the start", text=_seconds(scenario.before_s))
+    yield Fact(name="record after clearing", text=_seconds(scenario.after_s))
+
+
+def describe_sag(sag: Sag) -> str:
+    """Name depth, phases and kind of a sag, and what is left of the voltage."""
+    where = _phases(sag.phases)
+    turned = f", turned by {sag.angle_deg:+g} °" if sag.angle_deg else ""
+    if sag.depth == 0:
+        return f"{where}{turned}" if turned else "none"
+    lost, left = f"{100 * sag.depth:.6g} %", f"{100 * (1 - sag.depth):.4g} % left"
+    if sag.type:
+        return f"type {sag.type}, {lost}, {left}"
+    if sag.two_phase:
+        return f"{lost} of the line-to-line voltage {sag.phases}, {left}"
+    return f"{lost} in {where}, {left}{turned}"
+
+
+def stretch_in_words(scenario: Scenario, t_s: float) -> str:
+    """Sag that holds from an instant of the record on (s), and events that begin there; empty without either."""
+    since_start_s = t_s - scenario.start_s
+    sags = [(0.0, scenario.duration_s, scenario.sag)]
+    sags += [(e.t_s, e.t_s + e.duration_s, e.sag) for e in scenario.events if isinstance(e, FurtherSag)]
+    # As the timeline adds up, to the last bit: a sag that begins here holds, one that ends here does not.
+    holding = [
+        (begin_s, sag)
+        for begin_s, end_s, sag in sags
+        if scenario.start_s + begin_s <= t_s < scenario.start_s + end_s and _is_something(sag)
+    ]
+    words = [describe_sag(max(reversed(holding), key=lambda item: item[0])[1])] if holding else []
+    words += [f"{fact.name} {fact.text}" for fact in map(_event, _begun(scenario, since_start_s))]
+    return "; ".join(words)
+
+
+def _begun(scenario: Scenario, since_start_s: float) -> Iterator[Event]:
+    """Events other than sags that begin at an instant (s, from the start of the test)."""
+    for event in scenario.events:
+        begins_s = event.points[0][0] if isinstance(event, VoltageProfile) else event.t_s
+        if not isinstance(event, FurtherSag) and begins_s is not None and abs(begins_s - since_start_s) < 1e-9:
+            yield event
+
+
+def _is_something(sag: Sag) -> bool:
+    return sag.depth > 0 or _is_turn(sag)
+
+
+def _is_turn(sag: Sag) -> bool:
+    return sag.depth == 0 and sag.angle_deg != 0
+
+
+def _phases(phases: str) -> str:
+    return "all three phases" if phases == "abc" else f"phase{'s' * (len(phases) > 1)} {' and '.join(phases)}"
+
+
+def _grid(scr: float | None, xr: float) -> str:
+    return "stiff: the source at the terminals" if scr is None else f"short-circuit ratio {scr:g}, X/R {xr:g}"
+
+
+def _event(event: Any) -> Fact:
+    """An event besides the sag; instants count from the start of the test."""
+    match event:
+        case FurtherSag():
+            name, text = "further sag", f"{describe_sag(event.sag)}, for {_seconds(event.duration_s)}"
+        case VoltageProfile():
+            points = ", ".join(f"{u:g} pu at {t:g} s" for t, u in event.points)
+            return Fact(name="voltage profile", text=points)
+        case PhaseJump():
+            name, text = "phase jump", f"all phases by {event.angle_deg:+g} °"
+        case FrequencyStep():
+            name, text = "frequency step", f"to {event.to_hz:g} Hz"
+        case FrequencyRamp():
+            name, text = "frequency ramp", f"{event.rate_hz_s:+g} Hz/s for {_seconds(event.duration_s)}"
+        case GridStrength():
+            name, text = "grid strength", _grid(event.scr, event.xr)
+        case Harmonic():
+            length = "" if event.duration_s is None else f" for {_seconds(event.duration_s)}"
+            name = "harmonic"
+            text = f"order {event.order}, {100 * event.amplitude_pu:g} %, {event.natural_sequence} sequence{length}"
+        case Irradiance():
+            ramp = f" within {_seconds(event.ramp_s)}" if event.ramp_s else ""
+            name, text = "irradiance", f"to {event.to_w_m2:g} W/m²{ramp}"
+        case Recording():
+            name, text = "recording", f"{event.file}, channels {', '.join(event.channels)}"
+    return Fact(name=name, text=text if event.t_s is None else f"{text}, at {event.t_s:g} s")
+
+
+def _seconds(value_s: float) -> str:
+    return f"{value_s:.3f} s"

@@ -1,0 +1,79 @@
+"""The frequency that a check judges: measured, without what steps of the voltage and of its angle make of it."""
+
+import numpy as np
+
+from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
+from pvlvrt_compliance.evidence.excursions import excursions
+from pvlvrt_compliance.evidence.series import Mask
+from pvlvrt_compliance.evidence.stretches import after_each_step
+from pvlvrt_compliance.waveforms.container import Samples
+
+
+def frequency_hz(evidence: Evidence) -> Samples:
+    """Frequency at each sample (Hz), the last known value held; shape (n,), NaN before the first."""
+    known = known_frequency_hz(evidence)
+    last = np.maximum.accumulate(np.where(np.isfinite(known), np.arange(len(known)), -1))
+    return np.where(last >= 0, known[last], np.nan)
+
+
+def known_frequency_hz(evidence: Evidence) -> Samples:
+    """Frequency at each sample (Hz), NaN where it is not known, shape (n,).
+
+    It is not for some cycles after each step of the voltage or of its angle: a jump of the angle is no frequency, and
+    codes leave out the instants of a fault and of its clearing; nor where the source has hardly any voltage. A record
+    without the source's voltage has that of the terminals, whose angle the inverter's current turns behind an
+    impedance: there it is not known for as long as the voltage is not normal, and until the current has settled after
+    that and after each step.
+    """
+    return np.where(_disturbed(evidence), np.nan, evidence.tracked_frequency_hz)
+
+
+def held_in_words(evidence: Evidence) -> str:
+    """What a message says of a frequency that was not measured throughout, empty when it was."""
+    return "" if _has_source(evidence) else " (at the terminals, held while their voltage was not normal)"
+
+
+def _has_source(evidence: Evidence) -> bool:
+    return "u0_a_v" in evidence.waveforms.names
+
+
+def _disturbed(evidence: Evidence) -> Mask:
+    """Where the measured frequency is not the grid's."""
+    spoiled = evidence.thresholds.frequency_settled_cycles.value
+    settled = evidence.thresholds.terminals_settled_cycles.value
+    spoiled_s, settled_s = spoiled / evidence.frequency_hz, settled / evidence.frequency_hz
+    disturbed = after_each_step(evidence, spoiled_s, evidence.disturbance.steps_of("angle", "voltage"))
+    if _has_source(evidence):
+        faint = evidence.sequence_pu("u0", 0) < evidence.thresholds.least_source_pu.value
+        return disturbed | _around(faint, evidence, spoiled)
+    abnormal = evidence.disturbance.normal.is_left_by(evidence.voltage_positive_pu, evidence.voltage_negative_pu)
+    disturbed |= after_each_step(evidence, settled_s, evidence.disturbance.voltage_steps_s)
+    return disturbed | _around(abnormal, evidence, settled)
+
+
+def _around(mask: Mask, evidence: Evidence, after_cycles: float) -> Mask:
+    """A mask with the cycle before each stretch, in which a one-cycle voltage was on its way, and some cycles after."""
+    cycle_s = 1 / evidence.frequency_hz
+    around = np.zeros(len(mask), dtype=np.bool_)
+    for begin_s, end_s in excursions(mask, evidence.t_s, gap_s=cycle_s):
+        around |= evidence.between(begin_s - cycle_s, end_s + after_cycles * cycle_s)
+    return around
+
+
+def largest_deviation(evidence: Evidence) -> tuple[float, float]:
+    """Frequency furthest from nominal (Hz) and its instant (s).
+
+    Raises
+    ------
+    NotApplicable
+        When the record has no voltage to measure a frequency of, or stays near nominal (`frequency_deviation_hz`).
+    """
+    frequency = frequency_hz(evidence)
+    known = np.flatnonzero(np.isfinite(frequency))
+    if not len(known):
+        raise NotApplicable("the record has no frequency")
+    deviation = np.abs(frequency[known] - evidence.nominal.frequency_hz)
+    at = known[deviation.argmax()]
+    if deviation.max() <= (near_hz := evidence.thresholds.frequency_deviation_hz.value):
+        raise NotApplicable(f"the frequency stays within {near_hz:g} Hz of nominal")
+    return float(frequency[at]), float(evidence.t_s[at])

@@ -1,0 +1,223 @@
+"""Series that several checks need, each made from the record once."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pvlvrt_compliance.disturbance.model import Disturbance
+from pvlvrt_compliance.measure.fourier import ComplexSamples, Frequency, one_cycle_mean
+from pvlvrt_compliance.measure.frequency import frequency_before
+from pvlvrt_compliance.measure.power import (
+    Power,
+    SequenceCurrent,
+    instantaneous_power,
+    negative_sequence_current,
+    sequence_current,
+)
+from pvlvrt_compliance.measure.sequences import sequence_phasors
+from pvlvrt_compliance.measure.tracking import steering_frequency, tracked_frequency
+from pvlvrt_compliance.profile.thresholds import STANDARD_THRESHOLDS, Thresholds
+from pvlvrt_compliance.space_vectors import Sequences, phases
+from pvlvrt_compliance.units import Nominal
+from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
+from pvlvrt_compliance.waveforms.joining import one_cycle_series
+
+Mask = NDArray[np.bool_]
+
+_SAME_INSTANT_S = 1e-9
+_TRACKING_CYCLES = 4  # that a tracked frequency rests on, and settles in
+_STEERING_CYCLES = 8  # that the frequency of one-cycle windows rests on, and settles in
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Series:
+    """Series of one record: one value a sample, all segments joined.
+
+    One-cycle series are NaN in the first cycle of the record, and after a change to a sampling step that does not fit
+    the one before (`waveforms.joining`).
+
+    Parameters
+    ----------
+    waveforms : Waveforms
+        The record.
+    nominal : Nominal
+        Base of the per-unit values.
+    disturbance : Disturbance
+        What the grid did.
+    thresholds : Thresholds
+        Floors of measurement.
+    """
+
+    waveforms: Waveforms
+    nominal: Nominal
+    disturbance: Disturbance
+    thresholds: Thresholds = STANDARD_THRESHOLDS
+
+    @cached_property
+    def frequency_hz(self) -> float:
+        """Fundamental frequency, measured before the disturbance (Hz)."""
+        return frequency_before(self.waveforms, self.disturbance.start_s, self.nominal.frequency_hz, self._floor_v)
+
+    @cached_property
+    def t_s(self) -> Samples:
+        """Time of each sample (s), shape (n,)."""
+        return self.joined(lambda segment: segment.t_s)
+
+    @cached_property
+    def step_s(self) -> Samples:
+        """Sampling step at each sample (s), by which it counts in what is taken over time, shape (n,)."""
+        return self.joined(lambda segment: np.full(len(segment), segment.dt_s))
+
+    @cached_property
+    def voltage_positive_pu(self) -> Samples:
+        """One-cycle V+ at the terminals, shape (n,)."""
+        return self.sequence_pu("u", 0)
+
+    @cached_property
+    def voltage_negative_pu(self) -> Samples:
+        """One-cycle V- at the terminals, shape (n,)."""
+        return self.sequence_pu("u", 1)
+
+    @cached_property
+    def voltage_phasors_pu(self) -> ComplexSamples:
+        """One-cycle phasors of the phase-to-neutral voltages at the terminals, shape (3, n)."""
+        return self._phases("u") / self.nominal.phase_voltage_peak_v
+
+    @cached_property
+    def no_load_phasors_pu(self) -> ComplexSamples | None:
+        """The same of the source without the inverter's current, None in a record that has no such voltages."""
+        if "u0_a_v" not in self.waveforms.names:
+            return None
+        return self._phases("u0") / self.nominal.phase_voltage_peak_v
+
+    @cached_property
+    def tracked_frequency_hz(self) -> Samples:
+        """Frequency of the positive sequence as it changes, NaN in the first two cycles, shape (n,).
+
+        Of the source where the record has its voltages: behind an impedance its current turns the terminals'.
+        """
+        kind = "u0" if "u0_a_v" in self.waveforms.names else "u"
+        found: Samples = self._one_cycle(
+            lambda segment: tracked_frequency(segment, self.nominal.frequency_hz, kind, self._floor_v), _TRACKING_CYCLES
+        )
+        return found
+
+    @cached_property
+    def current_phase_pu(self) -> Samples:
+        """One-cycle fundamental amplitudes of the phase currents, shape (3, n)."""
+        return np.abs(self._phases("i")) / self.nominal.phase_current_peak_a
+
+    @cached_property
+    def reactive_current_pu(self) -> Samples:
+        """One-cycle reactive current of the positive sequence, above 0 when it delivers reactive power, shape (n,).
+
+        0 where there is no voltage for it to be measured along.
+        """
+        no_voltage = self.voltage_positive_pu < self.thresholds.voltage_floor_pu.value
+        return np.where(no_voltage, 0.0, self.current_positive_pu.reactive)
+
+    @cached_property
+    def current_pu(self) -> Samples:
+        """Instantaneous phase currents, shape (3, n)."""
+        return self.joined(lambda segment: np.stack(segment.three_phase("i"))) / self.nominal.phase_current_peak_a
+
+    @cached_property
+    def current_positive_pu(self) -> SequenceCurrent:
+        """One-cycle active and reactive current of the positive sequence, shape (n,) each; NaN without voltage."""
+        return self._sequence_current_pu(0, sequence_current)
+
+    @cached_property
+    def current_negative_pu(self) -> SequenceCurrent:
+        """One-cycle active and reactive current of the negative sequence, shape (n,) each; NaN without voltage."""
+        return self._sequence_current_pu(1, negative_sequence_current)
+
+    @cached_property
+    def active_power_kw(self) -> Samples:
+        """One-cycle mean of P, shape (n,)."""
+        return self._mean_powers.p / 1e3
+
+    @cached_property
+    def reactive_power_kvar(self) -> Samples:
+        """One-cycle mean of Q, shape (n,)."""
+        return self._mean_powers.q / 1e3
+
+    @cached_property
+    def _mean_powers(self) -> Power:
+        """One-cycle means of P (W) and Q (var)."""
+        return Power(
+            *self._one_cycle(
+                lambda segment: one_cycle_mean(
+                    np.stack(instantaneous_power(segment)), segment.dt_s, self._window_hz(segment)
+                ),
+                1 if self._is_steady else _STEERING_CYCLES,
+            )
+        )
+
+    @cached_property
+    def instantaneous_kva(self) -> Power:
+        """Instantaneous P (kW) and Q (kvar), shape (n,) each."""
+        return Power(*self.joined(lambda segment: np.stack(instantaneous_power(segment))) / 1e3)
+
+    @cached_property
+    def dc_voltage_v(self) -> Samples:
+        """DC voltage (V), shape (n,)."""
+        return self.joined(lambda segment: segment["v_dc_v"])
+
+    def between(self, start_s: float, end_s: float) -> Mask:
+        """Mask of the samples from one instant to another, both included, shape (n,)."""
+        mask: Mask = (self.t_s >= start_s - _SAME_INSTANT_S) & (self.t_s <= end_s + _SAME_INSTANT_S)
+        return mask
+
+    def sequence_pu(self, kind: str, index: int) -> Samples:
+        """One-cycle amplitude of a sequence (0 positive, 1 negative) of the voltages ``u`` or ``u0``, shape (n,)."""
+        phasors: ComplexSamples = self._sequences(kind)[index]
+        return np.abs(phasors) / self.nominal.phase_voltage_peak_v
+
+    def joined(self, series: Callable[[Segment], Samples]) -> Samples:
+        """What a function makes of each segment, one after the other, shape (..., n)."""
+        return np.concatenate([series(segment) for segment in self.waveforms], axis=-1)
+
+    def _sequence_current_pu(self, index: int, split: Callable[..., SequenceCurrent]) -> SequenceCurrent:
+        found = split(self._sequences("u")[index], self._sequences("i")[index], self._floor_v)
+        return SequenceCurrent(*(x / self.nominal.phase_current_peak_a for x in found))
+
+    def _phases(self, kind: str) -> ComplexSamples:
+        return np.asarray(phases(*self._sequences(kind)), dtype=np.complex128)
+
+    def _sequences(self, kind: str) -> Sequences:
+        """One-cycle phasors of the sequences, peak values in V or A; angles of the same sample can be compared."""
+        if kind not in self._found:
+            self._found[kind] = Sequences(
+                *self._one_cycle(
+                    lambda segment: np.stack(sequence_phasors(segment, kind, self._window_hz(segment))),
+                    1 if self._is_steady else _STEERING_CYCLES,
+                )
+            )
+        return self._found[kind]
+
+    @property
+    def _floor_v(self) -> float:
+        """Amplitude below which a voltage has no angle to speak of (V, peak)."""
+        return self.thresholds.voltage_floor_pu.value * self.nominal.phase_voltage_peak_v
+
+    @cached_property
+    def _found(self) -> dict[str, Sequences]:
+        return {}
+
+    @property
+    def _is_steady(self) -> bool:
+        """Whether the grid keeps its frequency: one-cycle windows go by the one before the disturbance then."""
+        return not self.disturbance.frequency_moves
+
+    def _window_hz(self, segment: Segment) -> Frequency:
+        """Frequency that one-cycle windows go by (Hz)."""
+        if self._is_steady:
+            return self.frequency_hz
+        return steering_frequency(segment, "u", self.nominal.frequency_hz, self._floor_v)[0]
+
+    def _one_cycle(self, series: Callable[[Segment], NDArray[Any]], cycles: int = 1) -> NDArray[Any]:
+        return np.concatenate(one_cycle_series(self.waveforms, series, self.frequency_hz, cycles), axis=-1)

@@ -1,0 +1,35 @@
+"""A limit as a figure draws it, kept beside the verdict that it belongs to."""
+
+from typing import Self
+
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, model_validator
+
+VOLTAGE_POSITIVE, VOLTAGE_NEGATIVE, CURRENT = "voltage_positive_pu", "voltage_negative_pu", "current_pu"
+ACTIVE_POWER, REACTIVE_POWER, DC_VOLTAGE = "active_power_kw", "reactive_power_kvar", "dc_voltage_v"
+
+Line = tuple[FiniteFloat, ...]
+
+
+class Band(BaseModel):
+    """What a quantity must not leave over a time: above ``lower``, below ``upper``, straight lines between the points.
+
+    ``quantity`` names what is limited, as a figure's panel does: `voltage_positive_pu`, `voltage_negative_pu`,
+    `current_pu` (phase currents), `active_power_kw`, `reactive_power_kvar` or `dc_voltage_v`.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+
+    check: str = Field(description="kind of the requirement")
+    quantity: str
+    name: str = Field(description="in the legend")
+    t_s: Line = Field(min_length=1, description="from the start of the record")
+    lower: Line | None = None
+    upper: Line | None = None
+
+    @model_validator(mode="after")
+    def _of_one_length(self) -> Self:
+        if self.lower is None and self.upper is None:
+            raise ValueError("a band needs lower, upper or both")
+        if any(line is not None and len(line) != len(self.t_s) for line in (self.lower, self.upper)):
+            raise ValueError("lower and upper need as many points as t_s")
+        return self

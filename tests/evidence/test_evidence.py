@@ -1,0 +1,123 @@
+"""What a check sees of one record: its stretches, what is settled in them, and what opened the breaker."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from pvlvrt_compliance.disturbance.asked import disturbance_asked
+from pvlvrt_compliance.disturbance.model import NormalVoltage
+from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, floors_of
+from pvlvrt_compliance.evidence.stretches import after_each_step, between_steps_s, settled_pu, settling_s
+from pvlvrt_compliance.evidence.voltages import voltage_quantity_pu
+from pvlvrt_compliance.measure.summary import STANDARD_FLOORS, measure
+from pvlvrt_compliance.measure.windows import STANDARD_RULES
+from pvlvrt_compliance.profile.thresholds import STANDARD_THRESHOLDS
+from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.units import Nominal
+from pvlvrt_compliance.waveforms.container import Segment, Waveforms
+
+NORMAL = NormalVoltage(low_pu=0.9, high_pu=1.1, negative_pu=0.1)
+INNER = {"kind": "sag", "t_s": 0.2, "duration_s": 0.15, "sag": {"depth": 0.8}}
+DT_S = 1e-4
+
+
+def evidence_of(
+    duration_s: float = 0.6,
+    events=(INNER,),
+    levels=((0.0, 1.0), (0.3, 0.7), (0.5, 0.2), (0.65, 0.7), (0.9, 1.0)),
+    **channels,
+):
+    """A balanced voltage of these levels, and whatever other channels are given, as functions of time."""
+    scenario = Scenario(sag=Sag(depth=0.3), duration_s=duration_s, events=events)
+    t = DT_S * np.arange(int(scenario.end_s / DT_S))
+    begins, level = zip(*levels, strict=True)
+    u = np.sqrt(2) * 230 * np.array(level)[np.searchsorted(begins, t, side="right") - 1]
+    angle = 2 * np.pi * (50 * t - np.arange(3)[:, np.newaxis] / 3)
+    made = dict(zip(("u_a_v", "u_b_v", "u_c_v"), u * np.cos(angle), strict=True))
+    waveforms = Waveforms((Segment(0.0, DT_S, made | {name: f(t) for name, f in channels.items()}),))
+    asked = disturbance_asked(scenario, NORMAL)
+    return Evidence(
+        waveforms=waveforms,
+        nominal=Nominal(),
+        disturbance=asked,
+        available_power_w=500e3,
+        measurements=measure(waveforms, Nominal(), asked.start_s, asked.clear_s),
+        rules=STANDARD_RULES,
+        blocked_below_pu=0.01,
+    )
+
+
+def test_stretches_follow_the_steps_of_the_voltage():
+    """From each step to the next, the last to the end of the record; each measured where it is settled."""
+    evidence = evidence_of()
+    assert [part.begin_s for part in evidence.voltage_stretches] == pytest.approx([0.3, 0.5, 0.65, 0.9])
+    assert evidence.voltage_stretches[-1].end_s == evidence.waveforms.end_s
+    windows = [part.window for part in evidence.measured_stretches]
+    assert [window.voltage_positive_pu for window in windows] == pytest.approx([0.7, 0.2, 0.7, 1.0], abs=1e-9)
+    for part, window in zip(evidence.voltage_stretches, windows, strict=True):
+        assert part.begin_s < window.start_s < window.end_s <= part.end_s + DT_S
+
+
+def test_a_stretch_too_short_for_a_cycle_has_no_window():
+    """15 ms hold no settled cycle: the stretch is there, without numbers."""
+    short = INNER | {"duration_s": 0.015}
+    evidence = evidence_of(events=(short,), levels=((0.0, 1.0), (0.3, 0.7), (0.5, 0.2), (0.515, 0.7), (0.9, 1.0)))
+    assert [part.window is None for part in evidence.measured_stretches] == [False, True, False, False]
+
+
+@pytest.mark.parametrize(
+    ("at_s", "between", "level"), [(0.1, (0.0, 0.3), 1.0), (0.55, (0.5, 0.65), 0.2), (1.5, (0.9, None), 1.0)]
+)
+def test_what_is_settled_next_to_an_instant(at_s, between, level):
+    """The median between two steps has nothing of the cycle in which the voltage was on its way."""
+    evidence = evidence_of()
+    begin_s, end_s = between_steps_s(evidence, at_s)
+    assert (begin_s, end_s) == pytest.approx(
+        (between[0], evidence.waveforms.end_s if between[1] is None else between[1])
+    )
+    assert settled_pu(evidence, evidence.voltage_positive_pu, at_s) == pytest.approx(level, abs=1e-9)
+
+
+def test_a_step_spoils_one_cycle_and_a_tenth():
+    """Outside of that the one-cycle voltage is where it leads to, inside it is not."""
+    evidence = evidence_of()
+    spoiled = after_each_step(evidence, settling_s(evidence), evidence.disturbance.voltage_steps_s)
+    known = ~spoiled & (evidence.t_s > 0.021)
+    asked = np.array([evidence.disturbance.no_load(t).positive_pu for t in evidence.t_s[known]])
+    assert evidence.voltage_positive_pu[known] == pytest.approx(asked, abs=1e-9)
+    assert np.abs(evidence.voltage_positive_pu[spoiled] - 0.7).max() > 0.2
+
+
+def test_every_voltage_that_codes_speak_of_is_the_same_in_a_balanced_grid():
+    """Sequences, phases and line-to-line voltages of a balanced grid are all one number."""
+    evidence = evidence_of()
+    settled = evidence.between(0.4, 0.499)
+    for quantity in ("positive_sequence", "mean_phase", "lowest_phase", "highest_phase", "lowest_line_to_line"):
+        assert voltage_quantity_pu(evidence, quantity)[settled] == pytest.approx(0.7, abs=1e-9)
+
+
+@pytest.mark.parametrize(("code", "words"), [(0, None), (1, "over-current relay of the plant"), (99, "cause 99")])
+def test_the_cause_of_a_trip_is_a_fact_of_the_record(code, words):
+    """A record that says why the breaker opened is believed; one without the channel says nothing."""
+    assert evidence_of(trip_cause=lambda t: np.where(t > 0.4, code, 0)).trip_cause == words
+    assert evidence_of().trip_cause is None
+
+
+def test_a_sag_too_short_has_no_window():
+    """Whoever needs the window during the sag is let off with the reason."""
+    evidence = evidence_of(duration_s=0.05, events=(), levels=((0.0, 1.0), (0.3, 0.7), (0.35, 1.0)))
+    with pytest.raises(NotApplicable, match=r"0\.050 s leaves no whole cycle"):
+        evidence.during()
+
+
+def test_windows_are_measured_by_the_floors_of_the_profile():
+    """Without a profile they are the usual ones; a higher floor leaves a window without a frequency."""
+    assert floors_of(STANDARD_THRESHOLDS) == STANDARD_FLOORS
+    usual = evidence_of().measured_stretches[0].window
+    floor = STANDARD_THRESHOLDS.window_voltage_floor_pu.model_copy(update={"value": 0.8})
+    thresholds = STANDARD_THRESHOLDS.model_copy(update={"window_voltage_floor_pu": floor})
+    faint = dataclasses.replace(evidence_of(), thresholds=thresholds).measured_stretches[0].window
+    assert usual.voltage_positive_pu == faint.voltage_positive_pu == pytest.approx(0.7, abs=1e-6)
+    assert (usual.frequency_hz, faint.frequency_hz) == (pytest.approx(50, abs=1e-3), None)
