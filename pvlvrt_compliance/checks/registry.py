@@ -3,14 +3,14 @@
 import inspect
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from pvlvrt_compliance.checks.check import Check
 from pvlvrt_compliance.errors import UsageError
-from pvlvrt_compliance.profile.requirements import BUILT_IN, CustomRequirement, Kinds, Requirement
+from pvlvrt_compliance.profile.requirements import BUILT_IN, CustomRequirement, Requirement
 
 if TYPE_CHECKING:
     from pvlvrt_compliance.evidence.evidence import Evidence
@@ -61,27 +61,13 @@ def judges_connection(kind: str) -> bool:
     return check is not None and check.judges_connection
 
 
-class InstalledKinds(Mapping[str, type[Requirement]]):
-    """Models of all kinds that can be judged, for `load_profile`; packages are asked only beyond the built-in ones."""
-
-    def __getitem__(self, kind: str) -> type[Requirement]:
-        if kind in BUILT_IN:
-            return BUILT_IN[kind]
-        return _typed(_of_other_packages())[kind]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter([*BUILT_IN, *_typed(_of_other_packages())])
-
-    def __len__(self) -> int:
-        return len(BUILT_IN) + len(_typed(_of_other_packages()))
-
-
-INSTALLED_KINDS: Kinds = InstalledKinds()
-
-
-def _typed(checks: Mapping[str, Check]) -> dict[str, type[Requirement]]:
+def kinds_of_other_packages() -> dict[str, type[Requirement]]:
     """Kinds that stand in a table of their own; what brings no model stands under ``custom``."""
-    return {kind: check.requirement for kind, check in checks.items() if check.requirement is not CustomRequirement}
+    return {
+        kind: check.requirement
+        for kind, check in _of_other_packages().items()
+        if check.requirement is not CustomRequirement
+    }
 
 
 @cache

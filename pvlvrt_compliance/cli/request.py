@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, get_args
 
 from pydantic import ValidationError
 
-from pvlvrt_compliance.checks.registry import INSTALLED_KINDS
+from pvlvrt_compliance.checks.kinds import INSTALLED_KINDS
 from pvlvrt_compliance.data.search_path import known_profiles
 from pvlvrt_compliance.errors import UsageError, did_you_mean
 from pvlvrt_compliance.profile.loading import load_profile

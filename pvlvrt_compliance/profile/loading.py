@@ -22,7 +22,7 @@ def load_profile(name_or_path: str, kinds: Kinds = BUILT_IN) -> Profile:
     name_or_path : str
         A name that `known_profiles` has, or a path: ends in ``.toml`` or has a path separator.
     kinds : mapping
-        Kinds of requirements that it may have, with their models (`checks.registry` knows those of other packages).
+        Kinds of requirements that it may have, with their models (`checks.kinds` knows those of other packages).
 
     Raises
     ------

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from pvlvrt_compliance.checks.registry import INSTALLED_KINDS
+from pvlvrt_compliance.checks.kinds import INSTALLED_KINDS
 from pvlvrt_compliance.data.search_path import known_profiles
 from pvlvrt_compliance.disturbance.asked import disturbance_asked
 from pvlvrt_compliance.disturbance.found import Thresholds, disturbance_found

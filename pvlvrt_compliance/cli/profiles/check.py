@@ -12,7 +12,7 @@ def check(
 
     Example: pvlvrt-check profiles check my-code.toml
     """
-    from pvlvrt_compliance.checks.registry import INSTALLED_KINDS
+    from pvlvrt_compliance.checks.kinds import INSTALLED_KINDS
     from pvlvrt_compliance.profile.loading import load_profile
 
     profile = load_profile(file, INSTALLED_KINDS)

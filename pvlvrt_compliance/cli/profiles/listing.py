@@ -16,7 +16,7 @@ def list_profiles() -> int:
     from rich.console import Console
     from rich.table import Table
 
-    from pvlvrt_compliance.checks.registry import INSTALLED_KINDS
+    from pvlvrt_compliance.checks.kinds import INSTALLED_KINDS
     from pvlvrt_compliance.data.search_path import known_profiles
     from pvlvrt_compliance.errors import ProfileError
     from pvlvrt_compliance.profile.loading import load_profile

@@ -25,7 +25,7 @@ def plot(
 
     Example: pvlvrt-check profiles plot iec61400-21 --output envelope.svg
     """
-    from pvlvrt_compliance.checks.registry import INSTALLED_KINDS
+    from pvlvrt_compliance.checks.kinds import INSTALLED_KINDS
     from pvlvrt_compliance.profile.loading import load_profile
 
     if scale and scale not in _SCALES:

@@ -10,7 +10,7 @@ def schema() -> None:
     """
     import json
 
-    from pvlvrt_compliance.checks.registry import INSTALLED_KINDS
+    from pvlvrt_compliance.checks.kinds import INSTALLED_KINDS
     from pvlvrt_compliance.profile.schema import file_schema
 
     print(json.dumps(file_schema(INSTALLED_KINDS), indent=2))

@@ -13,7 +13,7 @@ def show(
 
     Example: pvlvrt-check profiles show iec61400-21 | less
     """
-    from pvlvrt_compliance.checks.registry import INSTALLED_KINDS
+    from pvlvrt_compliance.checks.kinds import INSTALLED_KINDS
     from pvlvrt_compliance.profile.loading import load_profile
 
     profile = load_profile(name, INSTALLED_KINDS)
