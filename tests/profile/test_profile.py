@@ -222,3 +222,27 @@ def test_thresholds_are_marked_numbers_that_a_profile_may_state(tmp_path):
     assert mine.digest != load_profile("iec61400-21").digest
     assert any(note.startswith("thresholds normal_high_pu: chosen") for note in mine.unverified())
     assert not any(note.startswith("thresholds normal_low_pu") for note in mine.unverified())
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("settled_cycles.value = 1000", "thresholds.settled_cycles: must be at most 20, not 1000"),
+        ("voltage_floor_pu.value = 0.5", "thresholds.voltage_floor_pu: must be at most 0.2, not 0.5"),
+        (
+            "normal_low_pu.value = 1.3",
+            "normal_low_pu and normal_high_pu must lie on either side of 1: 1.3, 1.1",
+        ),
+        ("setled_cycles.value = 2", 'thresholds.setled_cycles: unknown key; did you mean "settled_cycles"'),
+    ],
+)
+def test_thresholds_that_would_leave_nothing_to_judge_are_refused(tmp_path, line, says):
+    """No profile can switch its judges off by a floor, nor call a nominal voltage a sag."""
+    name = line.partition(".")[0]
+    marks = f'{name}.confidence = "chosen"\n{name}.source = "a test"\n'
+    file = tmp_path / "mine.toml"
+    head = 'schema_version = 1\nid = "mine"\ntitle = "mine"\ninclude = ["iec61400-21"]\n[thresholds]\n'
+    file.write_text(head + line + "\n" + marks)
+    with pytest.raises(ProfileError) as told:
+        load_profile(str(file))
+    assert says in str(told.value)
