@@ -94,9 +94,10 @@ class Envelope(Marked):
         return levels[np.maximum(reached, 0)]
 
     def held(self, begin_s: float, end_s: float) -> tuple[tuple[float, float], ...]:
-        """Points (s, pu) that straight lines join as the envelope runs, from one time to another at least."""
+        """Points (s, pu) that straight lines join as the envelope runs, from one time to another."""
         drawn: list[tuple[float, float]] = []
-        for t, level in (*self.points, (max(end_s, self.points[-1][0]), self.points[-1][1])):
+        inside = [(t, level) for t, level in self.points if t < end_s]
+        for t, level in (*inside, (end_s, float(self.voltage_at(end_s)))):
             if drawn and self.interpolation == "step":
                 drawn.append((max(t, begin_s), drawn[-1][1]))
             drawn.append((max(t, begin_s), level))

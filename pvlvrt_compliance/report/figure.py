@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from pvlvrt_compliance.report.decimation import BUCKETS, Trace, typed_array
-from pvlvrt_compliance.report.instants import ROW_PX, Figure, labels, shapes, steps_of
+from pvlvrt_compliance.report.instants import ROW_PX, ROWS, Figure, labels, shapes, steps_of
 from pvlvrt_compliance.report.panels import BLACK, GREY, Curve, Line, Panel, panels
 from pvlvrt_compliance.results import TestResult
 from pvlvrt_compliance.units import Nominal
@@ -13,7 +13,7 @@ from pvlvrt_compliance.waveforms.container import Waveforms
 
 _HEIGHT_PX = 150.0
 _GAP_PX = 30.0
-_TOP_PX = 100.0
+_TOP_PX = 55.0 + ROWS * ROW_PX
 _BOTTOM_PX = 44.0
 _BEFORE_S, _AFTER_S = 0.02, 0.08  # what the zoom on an instant shows
 _FONT = "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', Arial, sans-serif"
@@ -145,7 +145,7 @@ def _zoom_buttons(waveforms: Waveforms, test: TestResult) -> Figure:
         "xanchor": "left",
         "y": 1,
         "yanchor": "bottom",
-        "pad": {"b": 5 + 4 * ROW_PX, "t": 0, "l": 0, "r": 0},
+        "pad": {"b": 5 + (ROWS + 1) * ROW_PX, "t": 0, "l": 0, "r": 0},
         "font": {"size": 11},
         "buttons": [
             {"label": name, "method": "relayout", "args": [{"xaxis.range": list(span)}]} for name, span in spans.items()

@@ -1,6 +1,6 @@
 """What a figure says of instants: steps of the disturbance, what is no normal voltage, the window, the breaker."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from pvlvrt_compliance.disturbance.model import Step
@@ -14,6 +14,11 @@ Figure = dict[str, Any]
 ROW_PX = 15
 """Height of a row of labels above the figure."""
 
+ROWS = 4
+"""Rows of labels."""
+
+_NEAR_AN_END = 0.25  # of the record: words as long as they are here would leave the figure
+
 
 def shapes(waveforms: Waveforms, test: TestResult) -> list[Figure]:
     """Areas and lines across all panels."""
@@ -21,8 +26,14 @@ def shapes(waveforms: Waveforms, test: TestResult) -> list[Figure]:
 
 
 def labels(waveforms: Waveforms, test: TestResult) -> list[Figure]:
-    """Words above the first panel."""
-    return [*_instants(test), *_opening_label(waveforms, test)]
+    """Words above the first panel, none of which leaves it."""
+    start_s, span_s = waveforms.t0_s, waveforms.end_s - waveforms.t0_s
+
+    def place(at_s: float, usual: str) -> str:
+        share = (at_s - start_s) / span_s if span_s > 0 else 0.0
+        return "left" if share < _NEAR_AN_END else "right" if share > 1 - _NEAR_AN_END else usual
+
+    return [*_instants(test, place), *_opening_label(waveforms, test, place)]
 
 
 def _area(start_s: float, end_s: float, colour: str) -> Figure:
@@ -85,26 +96,29 @@ def _opening_line(waveforms: Waveforms) -> Iterator[Figure]:
         yield _vertical(at_s, VERMILION, "solid")
 
 
-def _instants(test: TestResult) -> Iterator[Figure]:
+def _instants(test: TestResult, place: Callable[[float, str], str]) -> Iterator[Figure]:
     """Name the first and the last step, and the window between them; steps between stand without words."""
     steps, during = steps_of(test), test.measurements.during
     if steps:
-        yield _label(steps[0].at_s, _step_in_words(steps[0], "start"), "right", row=1)
+        yield _label(steps[0].at_s, _step_in_words(steps[0], "start"), place(steps[0].at_s, "right"), row=1)
     if len(steps) > 1:
-        yield _label(steps[-1].at_s, _step_in_words(steps[-1], "end"), "left", row=1)
+        apart = place(steps[0].at_s, "right") == "right" and place(steps[-1].at_s, "left") == "left"
+        row = 1 if apart else 2
+        yield _label(steps[-1].at_s, _step_in_words(steps[-1], "end"), place(steps[-1].at_s, "left"), row=row)
     if during:
-        yield _label((during.start_s + during.end_s) / 2, "window “during”", "center", row=2, colour=BLUE)
+        middle_s = (during.start_s + during.end_s) / 2
+        yield _label(middle_s, "window “during”", place(middle_s, "center"), row=3, colour=BLUE)
 
 
 def _step_in_words(step: Step, name: str) -> str:
     return f"{name} {step.at_s:.3f} s ({', '.join(step.moved)})"
 
 
-def _opening_label(waveforms: Waveforms, test: TestResult) -> Iterator[Figure]:
+def _opening_label(waveforms: Waveforms, test: TestResult, place: Callable[[float, str], str]) -> Iterator[Figure]:
     at_s = opened_at_s(waveforms)
     if at_s is not None:
         by = f": {test.trip_cause}" if test.trip_cause else ""
-        yield _label(at_s, f"breaker opens {at_s:.3f} s{by}", "left", row=3, colour=VERMILION)
+        yield _label(at_s, f"breaker opens {at_s:.3f} s{by}", place(at_s, "left"), row=4, colour=VERMILION)
 
 
 def _label(at_s: float, text: str, anchor: str, row: int, colour: str = BLACK) -> Figure:

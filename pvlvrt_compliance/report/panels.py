@@ -3,11 +3,14 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from itertools import cycle
 from typing import NamedTuple
 
 import numpy as np
 
 from pvlvrt_compliance.errors import MeasurementError
+from pvlvrt_compliance.measure.fourier import ComplexSamples
+from pvlvrt_compliance.measure.phase_quantities import VOLTAGES, voltage_amplitude
 from pvlvrt_compliance.measure.power import instantaneous_power
 from pvlvrt_compliance.measure.sequences import sequence_phasors
 from pvlvrt_compliance.report.decimation import BUCKETS, Samples, Trace, decimate
@@ -19,7 +22,10 @@ from pvlvrt_compliance.results.band import (
     REACTIVE_POWER,
     VOLTAGE_NEGATIVE,
     VOLTAGE_POSITIVE,
+    voltage_band,
+    voltage_in,
 )
+from pvlvrt_compliance.space_vectors import phases
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Segment, Waveforms
 from pvlvrt_compliance.waveforms.joining import one_cycle_series
@@ -27,6 +33,8 @@ from pvlvrt_compliance.waveforms.joining import one_cycle_series
 # Tol's high-contrast colours for the phases: told apart with every common colour blindness and in grey on paper.
 _PHASE_COLOURS = {"a": "#004488", "b": "#DDAA33", "c": "#BB5566"}
 BLUE, VERMILION, PURPLE, GREY, BLACK = "#0072B2", "#C44E00", "#9A3D8F", "#767676", "#222222"
+_JUDGED_COLOURS = ("#117733", "#0072B2", "#882255")
+_VOLTAGES = (VOLTAGE_POSITIVE, VOLTAGE_NEGATIVE)
 _DASHES = ("dash", "dot", "dashdot", "longdash")
 
 
@@ -70,19 +78,24 @@ def panels(waveforms: Waveforms, test: TestResult, nominal: Nominal, buckets: in
     frequency_hz = (before.frequency_hz if before else None) or nominal.frequency_hz
     curves = partial(_curves, waveforms, _shares(waveforms, buckets))
     voltage = curves(_each(waveforms, lambda s: _three_phase(s, "u", nominal.phase_voltage_peak_v)))
-    sequences = curves(_sequences(waveforms, frequency_hz, nominal))
+    judged = sorted({voltage_in(band.quantity) for band in test.bands} & set(VOLTAGES))
+    sequences = curves(_voltages(waveforms, frequency_hz, nominal, judged))
     current = curves(_each(waveforms, lambda s: _three_phase(s, "i", nominal.phase_current_peak_a)))
     power = curves(_each(waveforms, _power))
     dc_voltage = curves(_each(waveforms, lambda s: {"v<sub>DC</sub>": (BLACK, s["v_dc_v"])}))
     limits = partial(_limits, test.bands)
     found = [
         Panel("Phase-to-neutral voltages", "pu", 1.0, voltage),
-        Panel("Sequence voltages, one cycle", "pu", 1.0, sequences, limits(VOLTAGE_POSITIVE, VOLTAGE_NEGATIVE), True),
+        Panel(_title(judged), "pu", 1.0, sequences, limits(*_VOLTAGES, *map(voltage_band, judged)), True),
         Panel("Phase currents", "pu", 1.2, current, limits(CURRENT)),
         Panel("Active and reactive power", "kW, kvar", 1.2, power, limits(ACTIVE_POWER, REACTIVE_POWER)),
         Panel("DC voltage", "V", 0.8, dc_voltage, limits(DC_VOLTAGE)),
     ]
     return [panel for panel in found if panel.curves]
+
+
+def _title(judged: Sequence[str]) -> str:
+    return "One-cycle voltages" if judged else "Sequence voltages, one cycle"
 
 
 def _limits(bands: Sequence[Band], *quantities: str) -> list[Line]:
@@ -99,7 +112,7 @@ def _line(band: Band, dash: str) -> Line:
     colour = BLACK if band.quantity == CURRENT else VERMILION
     edges = [edge for edge in (band.upper, band.lower) if edge is not None]
     if len(edges) == 1:
-        area = band.quantity == VOLTAGE_POSITIVE and band.upper is None
+        area = band.quantity.startswith("voltage_") and band.upper is None
         return Line(band.name, band.t_s, edges[0], dash, colour, area=area)
     x = [*band.t_s, band.t_s[-1], *reversed(band.t_s)]
     return Line(band.name, x, [*edges[0], np.nan, *reversed(edges[1])], dash, colour)
@@ -142,24 +155,29 @@ def _without_leading_gap(segment: Segment, samples: Samples, buckets: int) -> Tr
 
 
 def _three_phase(segment: Segment, kind: str, base: float) -> Signals:
-    phases = segment.three_phase(kind)._asdict()
-    return {f"{kind}<sub>{name}</sub>": (_PHASE_COLOURS[name], x / base) for name, x in phases.items()}
+    found = segment.three_phase(kind)._asdict()
+    return {f"{kind}<sub>{name}</sub>": (_PHASE_COLOURS[name], x / base) for name, x in found.items()}
 
 
-def _sequences(waveforms: Waveforms, frequency_hz: float, nominal: Nominal) -> list[Signals]:
-    """One-cycle V+ and V- of each segment; none where they cannot be measured."""
-    base = nominal.phase_voltage_peak_v
+def _voltages(waveforms: Waveforms, frequency_hz: float, nominal: Nominal, judged: Sequence[str]) -> list[Signals]:
+    """One-cycle V+ and V- of each segment and the voltages that limits are of; none where they cannot be measured."""
 
     def series(segment: Segment) -> Samples:
         try:
             phasors = sequence_phasors(segment, "u", frequency_hz)
         except MeasurementError:  # without these channels, or sampled too thinly
-            return np.full((2, len(segment)), np.nan)
-        return np.abs([phasors.positive, phasors.negative]) / base
+            return np.full((2 + len(judged), len(segment)), np.nan)
+        of_phases: ComplexSamples = np.asarray(phases(*phasors), dtype=np.complex128) / nominal.phase_voltage_peak_v
+        sequences = np.abs([phasors.positive, phasors.negative]) / nominal.phase_voltage_peak_v
+        return np.stack([*sequences, *(voltage_amplitude(of_phases, quantity) for quantity in judged)])
 
+    named = [("V<sup>+</sup>", BLACK), ("V<sup>−</sup>", PURPLE)]
+    named += [(name.replace("_", " "), colour) for name, colour in zip(judged, cycle(_JUDGED_COLOURS), strict=False)]
     return [
-        {"V<sup>+</sup>": (BLACK, positive), "V<sup>−</sup>": (PURPLE, negative)} if np.isfinite(positive).any() else {}
-        for positive, negative in one_cycle_series(waveforms, series, frequency_hz)
+        {name: (colour, x) for (name, colour), x in zip(named, found, strict=True)}
+        if np.isfinite(found[0]).any()
+        else {}
+        for found in one_cycle_series(waveforms, series, frequency_hz)
     ]
 
 

@@ -7,14 +7,28 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, model_validator
 VOLTAGE_POSITIVE, VOLTAGE_NEGATIVE, CURRENT = "voltage_positive_pu", "voltage_negative_pu", "current_pu"
 ACTIVE_POWER, REACTIVE_POWER, DC_VOLTAGE = "active_power_kw", "reactive_power_kvar", "dc_voltage_v"
 
+_VOLTAGE = ("voltage_", "_pu")
+
 Line = tuple[FiniteFloat, ...]
+
+
+def voltage_band(quantity: str) -> str:
+    """Name that a limit of a voltage has here, by the profile's name of that voltage (`lowest_line_to_line`)."""
+    return VOLTAGE_POSITIVE if quantity == "positive_sequence" else quantity.join(_VOLTAGE)
+
+
+def voltage_in(band: str) -> str:
+    """The profile's name of the voltage that a limit is of: the opposite of `voltage_band`."""
+    name = band.removeprefix(_VOLTAGE[0]).removesuffix(_VOLTAGE[1])
+    return "positive_sequence" if band == VOLTAGE_POSITIVE else name
 
 
 class Band(BaseModel):
     """What a quantity must not leave over a time: above ``lower``, below ``upper``, straight lines between the points.
 
     ``quantity`` names what is limited, as a figure's panel does: `voltage_positive_pu`, `voltage_negative_pu`,
-    `current_pu` (phase currents), `active_power_kw`, `reactive_power_kvar` or `dc_voltage_v`.
+    `voltage_lowest_line_to_line_pu` and its like (`voltage_band`), `current_pu` (phase currents), `active_power_kw`,
+    `reactive_power_kvar` or `dc_voltage_v`.
     """
 
     model_config = ConfigDict(frozen=True, extra="ignore")

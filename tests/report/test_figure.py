@@ -10,6 +10,7 @@ from pvlvrt_compliance.disturbance.model import NormalVoltage
 from pvlvrt_compliance.measure.quantities import MeasuredWindows
 from pvlvrt_compliance.report import figure
 from pvlvrt_compliance.results import Band
+from pvlvrt_compliance.results.band import voltage_band
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.waveforms.container import Segment, Waveforms
@@ -150,6 +151,36 @@ def test_a_jump_of_the_angle_is_marked(make_record, make_test, nominal):
     assert [s["x0"] for s in drawn["layout"]["shapes"] if s["type"] == "line"] == pytest.approx([0.4])
     assert any(note["text"] == "start 0.400 s (angle)" for note in drawn["layout"]["annotations"])
     assert [button["label"] for button in drawn["layout"]["updatemenus"][0]["buttons"]] == ["whole record", "start"]
+
+
+def test_the_voltage_that_an_envelope_is_of_is_drawn_with_it(record, make_test, nominal):
+    """Phase c at 0.1 pu: the lowest line-to-line voltage is 0.608 pu, and stands beside V+ and V- in one panel."""
+    name = voltage_band("lowest_line_to_line")
+    band = Band(check="ride_through", quantity=name, name="ride-through envelope", t_s=(0.3, 1.7), lower=(0.0, 0.85))
+    unknown = Band(check="mine", quantity="voltage_of_the_moon_pu", name="none", t_s=(0.0,), lower=(0.0,))
+    drawn = figure.test_figure(record, make_test(bands=(band, unknown)), nominal)
+    t, y = _points(_named(drawn, "lowest line to line"))
+    assert y[(t > 0.33) & (t < 0.6)] == pytest.approx(abs(np.exp(2j * np.pi / 3) * 0.1 - 1) / np.sqrt(3), abs=2e-3)
+    envelope = _named(drawn, "ride-through envelope")
+    assert (envelope["x"], envelope["yaxis"]) == ([0.3, 1.7], _named(drawn, "lowest line to line")["yaxis"])
+    assert not {"none", "of the moon"} & {trace["name"] for trace in drawn["data"]}
+
+
+@pytest.mark.parametrize("lasts_s", [0.1, 3.0, 60.0])
+@pytest.mark.parametrize("before_s", [0.3, 50.0])
+def test_words_above_the_figure_stay_in_it(make_test, nominal, before_s, lasts_s):
+    """Whatever the record is like, no words begin left of it or end right of it, and none of the steps' overlap."""
+    scenario = Scenario(sag=Sag(depth=0.5), duration_s=lasts_s, before_s=before_s)
+    t = np.arange(0, scenario.end_s, 0.01)
+    test = make_test(disturbance=disturbance_asked(scenario, NORMAL), bands=())
+    drawn = figure.test_figure(Waveforms((Segment(0.0, 0.01, {"v_dc_v": t}),)), test, nominal)
+    words = {note["text"].split()[0]: note for note in drawn["layout"]["annotations"] if "(voltage)" in note["text"]}
+    for note in words.values():
+        share = note["x"] / scenario.end_s
+        assert share >= 0.25 or note["xanchor"] == "left"
+        assert share <= 0.75 or note["xanchor"] == "right"
+    apart = (words["start"]["xanchor"], words["end"]["xanchor"]) == ("right", "left")
+    assert apart or words["start"]["yshift"] != words["end"]["yshift"]
 
 
 def test_a_band_of_another_check_is_drawn(record, make_test, nominal):

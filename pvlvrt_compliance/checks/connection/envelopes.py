@@ -14,7 +14,7 @@ from pvlvrt_compliance.measure.durations import median_over_time
 from pvlvrt_compliance.profile.curves import Envelope, Side
 from pvlvrt_compliance.profile.requirements import RideThrough
 from pvlvrt_compliance.results import Band
-from pvlvrt_compliance.results.band import VOLTAGE_POSITIVE
+from pvlvrt_compliance.results.band import voltage_band
 from pvlvrt_compliance.space_vectors import fortescue
 from pvlvrt_compliance.waveforms.container import Samples
 
@@ -42,19 +42,26 @@ def envelope_limits(requirement: RideThrough, evidence: Evidence) -> list[Limit]
 
 
 def envelope_bands(kind: str, requirement: RideThrough, evidence: Evidence) -> list[Band]:
-    """The same envelopes as a figure draws them, from the start of the disturbance to the end of the record."""
-    return [_band(kind, *applied, evidence) for applied in _applied(requirement, evidence)]
+    """The same envelopes as a figure draws them: anew from each instant that they count from."""
+    tolerance_pu = requirement.envelope_tolerance_pu.value
+    return [_band(kind, *applied, tolerance_pu, evidence) for applied in _applied(requirement, evidence)]
 
 
-def _band(kind: str, envelope: Envelope, side: Side, by: str, evidence: Evidence) -> Band:
-    since_s = evidence.disturbance.start_s
-    t_s, level = zip(*envelope.held(0.0, evidence.waveforms.end_s - since_s), strict=True)
-    positive = envelope.voltage_quantity == "positive_sequence"
+def _band(kind: str, envelope: Envelope, side: Side, by: str, tolerance_pu: float, evidence: Evidence) -> Band:
+    voltage_pu = voltage_quantity_pu(evidence, envelope.voltage_quantity)
+    starts_s = _starts_s(envelope, side, tolerance_pu, voltage_pu, evidence)
+    ends_s = (*starts_s[1:], evidence.waveforms.end_s)
+    points = [
+        (begin_s + t, level)
+        for begin_s, end_s in zip(starts_s, ends_s, strict=True)
+        for t, level in envelope.held(0.0, end_s - begin_s)
+    ]
+    t_s, level = zip(*points, strict=True)
     return Band(
         check=kind,
-        quantity=VOLTAGE_POSITIVE if positive else f"voltage_{envelope.voltage_quantity}_pu",
+        quantity=voltage_band(envelope.voltage_quantity),
         name="ride-through envelope" if side is Side.LOW else by.removeprefix("the "),
-        t_s=tuple(since_s + t for t in t_s),
+        t_s=t_s,
         lower=level if side is Side.LOW else None,
         upper=level if side is Side.HIGH else None,
     )

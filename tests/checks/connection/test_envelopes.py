@@ -1,5 +1,6 @@
 """Envelopes of swells, of two-phase faults, and of disturbances that follow each other."""
 
+import numpy as np
 import pytest
 
 from pvlvrt_compliance.checks.connection.envelopes import is_two_phase
@@ -125,3 +126,15 @@ def test_trip_that_is_not_the_voltages_matter(bench, with_envelopes):
     profile = with_envelopes(recovery_fraction=0.9, recovery_time_s=0.5)
     less = bench(depth=0, duration_s=1.0, profile=profile, scenario={"events": [ramp]}, p_sag_kw=300, p_after_kw=300)
     assert less.check(KIND).message == "connected throughout"
+
+
+def test_the_drawn_envelope_begins_anew_where_the_judged_one_does(bench):
+    """A second sag has its own time: the band of the figure falls to the first level again at its step, not before."""
+    again = {"kind": "sag", "t_s": 1.0, "duration_s": 0.2, "sag": Sag(depth=0.9)}
+    made = bench(depth=0.9, duration_s=0.2, q_sag_kvar=50, scenario={"events": [again], "after_s": 2.0})
+    (band,) = [band for band in made.result().bands if band.quantity == "voltage_positive_pu"]
+    envelope = made.profile.envelope
+    for begin_s, until_s in ((0.3, 1.3), (1.3, 2.5)):
+        at = np.linspace(begin_s + 1e-6, until_s - 1e-6, 50)
+        assert np.interp(at, band.t_s, band.lower) == pytest.approx(envelope.voltage_at(at - begin_s), abs=1e-4)
+    assert band.t_s[-1] == pytest.approx(made.waveforms().end_s)
