@@ -13,6 +13,8 @@ from pvlvrt_compliance.results import Verdict
 # In the unit of the limit: far finer than any sensor, far coarser than what rounding adds up to.
 _NOISE = 0.5e-9
 
+_DIGITS, _MOST_DECIMALS = 4, 6  # that a limit is told with
+
 
 class Part(NamedTuple):
     """One thing that must not exceed its limit."""
@@ -70,13 +72,14 @@ def judged_by_parts(
     if not parts:
         raise NotApplicable("the profile states no limit for this test")
     worst = min(parts, key=lambda part: (part.passed, nearest(part)))
-    side = "within" if worst.passed else "beyond"
+    measured, margin, limit = (
+        _text(x, worst.limit, worst.unit) for x in (worst.measured, abs(worst.margin), worst.limit)
+    )
     return judged(
         kind,
         requirement,
         pass_or_fail(worst.passed),
-        f"{worst.what}: {_text(worst.measured, worst.unit)}, {_text(abs(worst.margin), worst.unit)} {side} the limit "
-        f"of {_text(worst.limit, worst.unit)}",
+        f"{worst.what}: {measured}, {margin} {'within' if worst.passed else 'beyond'} the limit of {limit}",
         measured=worst.measured,
         limit=worst.limit,
         margin=worst.margin,
@@ -86,5 +89,8 @@ def judged_by_parts(
     )
 
 
-def _text(value: float, unit: str) -> str:
-    return f"{value:.4g} {unit}".rstrip()
+def _text(value: float, limit: float, unit: str) -> str:
+    """A number as finely as its limit is told: nothing reads as a power of ten beside it."""
+    scale = abs(limit) or abs(value)
+    decimals = min(max(_DIGITS - 1 - math.floor(math.log10(scale)), 0), _MOST_DECIMALS) if scale > 0 else 0
+    return f"{value:.{decimals}f} {unit}".rstrip()

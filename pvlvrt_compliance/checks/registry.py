@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 ENTRY_POINT_GROUP = "pvlvrt_compliance.checks"
 """Each entry is a class, or a tuple of classes."""
 
-_OWN_ENTRY = "built-in"
+_OWN_ENTRY = "pvlvrt_compliance.checks.built_in:CHECKS"
 
 Judge = Callable[[Any, "Evidence"], "Verdict"]
 """How checks were written before they were classes."""
@@ -90,7 +90,7 @@ def _announced_on(path: tuple[str, ...]) -> dict[str, Check]:
 
     found: dict[str, Check] = {}
     for entry in entry_points(group=ENTRY_POINT_GROUP):
-        if entry.name != _OWN_ENTRY:
+        if entry.value != _OWN_ENTRY:
             for check in _checks_in(entry.name, _loaded(entry)):
                 if check.kind in found or check.kind in BUILT_IN:
                     raise UsageError(f"entry point {entry.name}: there is already a check {check.kind!r}")

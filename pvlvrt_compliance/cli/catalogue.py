@@ -11,7 +11,7 @@ def show_tests(job: Job) -> int:
     """Print the selected tests; nothing is simulated."""
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=0)
     several = len(job.profiles) > 1
-    for heading in (*(["profile"] if several else []), "test", "sag"):
+    for heading in (*(["profile"] if several else []), "test", "what happens"):
         table.add_column(heading, no_wrap=True)
     for heading in ("s", "W/m2", "deg", "Hz"):
         table.add_column(heading, justify="right", no_wrap=True)
@@ -21,7 +21,7 @@ def show_tests(job: Job) -> int:
         table.add_row(
             *([profile.id] if several else []),
             test.id,
-            scenario.sag.describe(),
+            scenario.describe(),
             f"{scenario.duration_s:.3f}",
             f"{scenario.irradiance_w_m2:g}",
             f"{scenario.point_on_wave_deg:g}",

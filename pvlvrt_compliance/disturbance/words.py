@@ -1,6 +1,6 @@
 """What the grid did, in words: what a scenario asked of grid and weather, and the state that a stretch is in."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from pvlvrt_compliance.disturbance.model import Fact, Kind, Voltage
@@ -118,8 +118,7 @@ def _event(event: Any) -> Fact:
         case FurtherSag():
             name, text = "further sag", f"{describe_sag(event.sag)}, for {_seconds(event.duration_s)}"
         case VoltageProfile():
-            points = ", ".join(f"{u:g} pu at {t:g} s" for t, u in event.points)
-            return Fact(name="voltage profile", text=points)
+            return Fact(name="voltage profile", text="; ".join(_along(event.points)))
         case PhaseJump():
             name, text = "phase jump", f"all phases by {event.angle_deg:+g} °"
         case FrequencyStep():
@@ -138,6 +137,16 @@ def _event(event: Any) -> Fact:
         case Recording():
             name, text = "recording", f"{event.file}, channels {', '.join(event.channels)}"
     return Fact(name=name, text=text if event.t_s is None else f"{text}, at {event.t_s:g} s")
+
+
+def _along(points: Sequence[tuple[float, float]]) -> Iterator[str]:
+    """Steps and ramps of a voltage profile, each once; a level that holds is not said again."""
+    before_s, before_pu = None, 1.0
+    for t_s, u_pu in points:
+        if u_pu != before_pu:
+            step = before_s is None or t_s == before_s
+            yield f"{u_pu:g} pu from {t_s:g} s" if step else f"ramp from {before_s:g} s to {u_pu:g} pu at {t_s:g} s"
+        before_s, before_pu = t_s, u_pu
 
 
 def _seconds(value_s: float) -> str:

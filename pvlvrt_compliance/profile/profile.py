@@ -98,10 +98,11 @@ class Profile(Frozen):
         """
         duration = self.sag_duration_s(sag) if duration_s is None else duration_s
         name = f"sag-{100 * sag.depth:.6g}pct-{sag.phases}"
+        scenario = make_scenario(self.procedure, sag=sag, duration_s=duration, **fields)
         return TestCase(
             id=f"{name}-two-phase" if sag.two_phase else f"{name}-type-{sag.type}" if sag.type else name,
-            title=f"{sag.describe()}, {duration:.3f} s",
-            scenario=make_scenario(self.procedure, sag=sag, duration_s=duration, **fields),
+            title=f"{scenario.describe()}, {duration:.3f} s",
+            scenario=scenario,
         )
 
     def unverified(self, case_ids: Collection[str] | None = None) -> tuple[str, ...]:

@@ -1,5 +1,7 @@
 """One run of the plant: the grid, the weather, and the sag with its instants."""
 
+from collections import Counter
+
 from pydantic import BaseModel, ConfigDict, Field
 
 from pvlvrt_compliance.scenario.events import Event
@@ -37,6 +39,13 @@ class Scenario(BaseModel):
     before_s: float = Field(default=0.3, ge=0.25, le=60, description="record before the sag")
     after_s: float = Field(default=1.1, ge=0.1, le=120, description="record after clearing")
     events: tuple[Event, ...] = Field(default=(), description="what happens besides; times from the start of the sag")
+
+    def describe(self) -> str:
+        """Name in a few words what happens, for tables and titles."""
+        kinds = Counter(event.kind.replace("_", " ") for event in self.events)
+        further = [f"{count} x {kind}" if count > 1 else kind for kind, count in kinds.items()]
+        own = [self.sag.describe()] if self.sag.depth or self.sag.angle_deg or not further else []
+        return ", ".join([*own, *further])
 
     @property
     def start_s(self) -> float:

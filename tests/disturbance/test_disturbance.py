@@ -156,7 +156,7 @@ def test_stretches_say_what_holds():
     asked = disturbance_asked(scenario_of(0.0, RAMP, step), NORMAL)
     assert [part.in_words for part in asked.stretches] == [
         "normal grid",
-        "voltage profile 1 pu at 0.1 s, 0.5 pu at 0.3 s, 0.8 pu at 0.3 s, 1 pu at 0.5 s",
+        "voltage profile ramp from 0.1 s to 0.5 pu at 0.3 s; 0.8 pu from 0.3 s; ramp from 0.3 s to 1 pu at 0.5 s",
         "sag: V+ 0.800 to 1.000 pu, V- 0.000 to 0.000 pu",
         "normal grid",
         "frequency step to 49 Hz, at 0.55 s",
@@ -236,3 +236,24 @@ def test_stretches_cover_the_record_without_gaps():
     assert asked.stretches[0].begin_s == 0
     assert asked.stretches[-1].end_s == pytest.approx(2.0)
     assert all(a.end_s == b.begin_s for a, b in itertools.pairwise(asked.stretches))
+
+
+def test_a_profile_of_the_voltage_is_told_level_by_level():
+    """A step is told once, with the level that it leads to; a level that holds is not told again."""
+    points = [[0, 1.0], [0, 0.94], [10, 0.94], [10, 0.3], [11, 0.8], [12, 0.8]]
+    asked = disturbance_asked(scenario_of(0.0, {"kind": "voltage_profile", "points": points}), NORMAL)
+    assert asked.in_words == "voltage profile 0.94 pu from 0 s; 0.3 pu from 10 s; ramp from 10 s to 0.8 pu at 11 s"
+
+
+@pytest.mark.parametrize(
+    ("scenario", "says"),
+    [
+        (scenario_of(0.0), "no sag"),
+        (scenario_of(0.5), "three-phase, 50 %"),
+        (scenario_of(0.0, JUMP), "phase jump"),
+        (scenario_of(0.3, INNER, INNER, JUMP), "three-phase, 30 %, 2 x sag, phase jump"),
+    ],
+)
+def test_a_scenario_in_a_few_words(scenario, says):
+    """Tables and titles never say that there is no sag where something else happens."""
+    assert scenario.describe() == says

@@ -8,7 +8,7 @@ import pytest
 
 from edges import GENERATORS, Edge, Record
 from edges.edge import SHORT_STEP_S, hz
-from pvlvrt_compliance.checks.connection.repeated_runs import KIND, judge_repeated_runs
+from pvlvrt_compliance.checks.connection.repeated_runs import KIND, RepeatedRunsCheck
 from pvlvrt_compliance.checks.registry import judges_connection
 from pvlvrt_compliance.data.marks import marks_in
 from pvlvrt_compliance.profile import Profile, known_profiles, load_profile
@@ -175,10 +175,10 @@ def test_edges_of_repeated_runs(demand):
     wanted = int(demand.consecutive.value)
     good = [run(k, Status.PASS) for k in range(wanted)]
     bad = [*good[:-1], run(wanted, Status.FAIL)]
-    assert judge_repeated_runs(demand, good).status is Status.PASS
-    assert judge_repeated_runs(demand, good[:-1]).status is Status.NOT_APPLICABLE
-    assert judge_repeated_runs(demand, bad).status is Status.FAIL
+    assert RepeatedRunsCheck().judge_row(demand, good).status is Status.PASS
+    assert RepeatedRunsCheck().judge_row(demand, good[:-1]).status is Status.NOT_APPLICABLE
+    assert RepeatedRunsCheck().judge_row(demand, bad).status is Status.FAIL
     if demand.consecutive_after_trip is not None:
         further = [run(10 + k, Status.PASS) for k in range(int(demand.consecutive_after_trip.value))]
-        assert judge_repeated_runs(demand, bad, further).status is Status.PASS
-        assert judge_repeated_runs(demand, bad, further[:-1]).status is Status.FAIL
+        assert RepeatedRunsCheck().judge_row(demand, bad, further).status is Status.PASS
+        assert RepeatedRunsCheck().judge_row(demand, bad, further[:-1]).status is Status.FAIL
