@@ -2,6 +2,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+import energy
 import invariants
 from draws import draws
 from records import record, without_trips
@@ -65,15 +66,15 @@ def test_missing_energy_shows(wrong):
     plant = {"filter_resistance_ohm": 0.01}
     parameters = without_trips(plant=plant)
     window = invariants.window_of(record(draw.scenario, parameters), draw)
-    bound = invariants.summing_bound(window, draw.scenario, parameters)
-    assert abs(invariants.unbalanced_energy(window, draw.scenario, parameters)) < bound
-    assert abs(invariants.unbalanced_energy(window, draw.scenario, without_trips(plant=plant | wrong))) > 10 * bound
+    bound = energy.summing_bound(window, draw.scenario, parameters)
+    assert abs(energy.unbalanced_energy(window, draw.scenario, parameters)) < bound
+    assert abs(energy.unbalanced_energy(window, draw.scenario, without_trips(plant=plant | wrong))) > 10 * bound
 
 
 def test_a_jump_that_is_counted_halfway_shows(monkeypatch):
     """By the trapezium rule alone, the step in which a sag begins is out of the bound in a window of a cycle."""
     assert invariants.broken(JUMP_IN_A_SHORT_WINDOW).of_bound < 0.1
-    monkeypatch.setattr(invariants, "jumps", lambda *_: [])
+    monkeypatch.setattr(energy, "jumps", lambda *_: [])
     assert invariants.broken(JUMP_IN_A_SHORT_WINDOW).of_bound > 5
 
 
