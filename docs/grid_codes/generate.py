@@ -8,13 +8,15 @@ import csv
 import json
 import sys
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 from pvlvrt_compliance.cli.main import run
+from pvlvrt_compliance.data.marks import marks_in
 from pvlvrt_compliance.data.search_path import SHIPPED, known_profiles
+from pvlvrt_compliance.profile import Profile
 from pvlvrt_compliance.profile.loading import load_profile
 
 HERE = Path(__file__).parent
@@ -29,7 +31,9 @@ Every test of every shipped profile, on the bundled inverter with its default se
 (tests of half an hour left out). This page is written by `python docs/grid_codes/generate.py`;
 [`verdicts.csv`](grid_codes/verdicts.csv) has the verdict of each check in each test. The controller was made for
 eq (9) of the paper, not for these codes, so failures are expected: each is stated with the clause and the worst test.
-Marks beside a clause say how far its numbers were verified (see the profiles).
+Marks beside a clause say how far its numbers were verified (see the profiles). Before each table stands what the
+profile says beside its limits: which tests need not be ridden through as a whole, how much current is the least, and
+which rows carry a mark of their own.
 """
 RELAY = """## Without the undervoltage relay
 
@@ -95,10 +99,44 @@ def worst_of(tests: Sequence[Test]) -> list[str]:
     return lines
 
 
+def demanded(profile: Profile) -> list[str]:
+    """What a profile says beside its limits: what its tests demand, the least current, marks of single rows."""
+    return [*_expected(profile), *_least_current(profile), *_own_marks(profile)]
+
+
+def _expected(profile: Profile) -> Iterator[str]:
+    for expect, words in (("may_trip", "may trip where the limits let it go"), ("must_trip", "must trip")):
+        rows = [row for row in profile.all_rows if row.expect == expect]
+        if rows:
+            ids = ", ".join(f"`{row.id}`" + ("" if row.by_s is None else f" by {row.by_s:g} s") for row in rows)
+            yield f"- {words}: {ids}; all other tests are to be ridden through as a whole."
+
+
+def _least_current(profile: Profile) -> Iterator[str]:
+    regions = profile.ride_through.regions if profile.ride_through else None
+    if regions is not None and (least := regions.least_current_fraction) is not None:
+        of = "the three phases together (rms)" if regions.least_current_of == "apparent" else "the phase with the most"
+        amount = f"{least.value:g} of the current before, of {of} ({least.confidence})"
+        yield f"- least current in mandatory operation: {amount}."
+
+
+def _own_marks(profile: Profile) -> Iterator[str]:
+    found: dict[tuple[str, str], list[str]] = {}
+    for kind, requirement in profile.requirements.by_kind():
+        for name, mark in marks_in(requirement, kind):
+            if name.endswith("]"):
+                found.setdefault((mark.confidence, mark.source), []).append(f"`{name}`")
+    for (confidence, source), names in found.items():
+        yield f"- {', '.join(names)}: {confidence} ({source}), a mark of the row's own."
+
+
 def section(profile: str, tests: Sequence[Test]) -> str:
     """One profile on the page."""
-    head = f"## {profile}\n\n{load_profile(profile).title}; {len(tests)} tests.\n"
-    return "\n".join([head, *counted(tests), "", *(worst_of(tests) or ["Everything that applies is passed."]), ""])
+    content = load_profile(profile)
+    head = f"## {profile}\n\n{content.title}; {len(tests)} tests.\n"
+    said = demanded(content)
+    outcome = worst_of(tests) or ["Everything that applies is passed."]
+    return "\n".join([head, *said, *([""] if said else []), *counted(tests), "", *outcome, ""])
 
 
 def without_relay(tests: Sequence[Test]) -> str:

@@ -22,6 +22,19 @@ from pvlvrt_compliance.control.synchronised import Synchronisation
 from pvlvrt_compliance.kernel import kernel
 from pvlvrt_compliance.vectors import ahead, dot, length, scaled, turned
 from rebuild import Loop, rebuilt_loop
+from slips import (
+    NO_LAPSE,
+    NO_SLIP,
+    Lapse,
+    Slip,
+    advance_or_trip,
+    lapsed,
+    slipped_current,
+    slipped_m,
+    slipped_negative,
+    slipped_order,
+    slipped_power,
+)
 
 
 class Wrong(IntEnum):
@@ -88,6 +101,8 @@ class WrongState(NamedTuple):
     right: ControllerState
     wrong: int
     memory: Memory
+    slip: Slip
+    lapse: Lapse
 
 
 _NOTHING_YET = Memory(t_low=0.0, t_back=0.0, t_high=0.0, gone=False, u_slow=0j, P_limit=0.0, Q_ref=0.0)
@@ -180,7 +195,14 @@ def regulate_dc_voltage(
 
 @kernel
 def wrong_references(
-    grid: Synchronisation, P_ref: float, Q_ref: float, V_fault: float, wrong: int, x: Memory, p: CurrentReferenceParams
+    grid: Synchronisation,
+    P_ref: float,
+    Q_ref: float,
+    V_fault: float,
+    wrong: int,
+    x: Memory,
+    times_negative: float,
+    p: CurrentReferenceParams,
 ) -> complex:
     """Current reference (A), with its mistake."""
     if x.gone or (wrong == _CEASES and V_fault < _CEASE_BELOW):
@@ -189,26 +211,31 @@ def wrong_references(
         active = current_references(grid.u_pos, grid.u_neg, P_ref, 0.0, p)
         reactive = current_references(grid.u_pos, scaled(-1.0, grid.u_neg), 0.0, Q_ref, p)
         return active + reactive
-    return current_references(grid.u_pos, grid.u_neg, P_ref, Q_ref, p)
+    return current_references(grid.u_pos, scaled(times_negative, grid.u_neg), P_ref, Q_ref, p)
 
 
 def wrong_step(x: WrongState, y: Measured, p: ControllerParams) -> tuple[WrongState, ControllerSignals]:
     """Advance the controller by one sample: `controller_step` with the mistakes."""
-    state, wrong = x.right, x.wrong
+    state, wrong, slip = x.right, x.wrong, x.slip
     sync, grid = synchronise(state.sync, y.u_g_ab, p.sync, p.T)
     right = lvrt_step(grid.u_pos, grid.u_neg, p.lvrt)
+    V, S_nom = right.V_fault, p.lvrt.S_nom
     memory = remember(x.memory, wrong, grid, right, p.T)
-    order = wrong_order(right, wrong, memory, p.lvrt)
+    lapse = lapsed(x.lapse, slip, right, p.T)
+    order = slipped_order(wrong_order(right, wrong, memory, p.lvrt), slip, lapse, S_nom)
     dc_voltage, P_ref, limited = regulate_dc_voltage(
         state.dc_voltage, y.v_dc, state.mppt.v_ref, order.P_limit, wrong, p.dc_voltage, p.T
     )
     if wrong == _P_FLOWS_BACK and order.fault:
-        P_ref = -_P_BACK * p.lvrt.S_nom
+        P_ref = -_P_BACK * S_nom
+    P_ref = slipped_power(P_ref, V, slip, lapse, S_nom)
     mppt = mppt_step(state.mppt, y.v_dc, y.i_pv, limited, p.mppt)
-    i_ref = wrong_references(grid, P_ref, order.Q_ref, order.V_fault, wrong, memory, p.references)
+    times = slipped_negative(V, slip, lapse)
+    i_ref = wrong_references(grid, P_ref, order.Q_ref, V, wrong, memory, times, p.references)
+    i_ref = slipped_current(i_ref, S_nom / p.lvrt.u_nom, V, slip, lapse)
     current, m = current_regulator_step(state.current, i_ref - y.i_ab, grid.w, grid.turns, p.current)
     signals = ControllerSignals(
-        m=modulate(m, y.u_g_ab, y.v_dc, p.modulator),
+        m=slipped_m(modulate(m, y.u_g_ab, y.v_dc, p.modulator), V, slip, lapse),
         V_fault=order.V_fault,
         fault=order.fault,
         w=grid.w,
@@ -218,18 +245,19 @@ def wrong_step(x: WrongState, y: Measured, p: ControllerParams) -> tuple[WrongSt
         i_ref=i_ref,
     )
     after = ControllerState(sync=sync, dc_voltage=dc_voltage, mppt=mppt, current=current)
-    return WrongState(right=after, wrong=wrong, memory=memory), signals
+    return WrongState(right=after, wrong=wrong, memory=memory, slip=slip, lapse=lapse), signals
 
 
 @cache
 def _rebuilt() -> Loop:
-    return rebuilt_loop(controller_step=wrong_step)
+    return rebuilt_loop(controller_step=wrong_step, advance=advance_or_trip)
 
 
-def _run(loop: Loop, wrong: int, plant: Any, controller: ControllerState, *others: Any) -> Any:
-    return loop(plant, WrongState(right=controller, wrong=wrong, memory=_NOTHING_YET), *others)
+def _run(loop: Loop, wrong: int, slip: Slip, plant: Any, controller: ControllerState, *others: Any) -> Any:
+    start = WrongState(right=controller, wrong=wrong, memory=_NOTHING_YET, slip=slip, lapse=NO_LAPSE)
+    return loop(plant, start, *others)
 
 
-def wrong_run(wrong: Wrong) -> Callable[..., Any]:
-    """Loop over time with one mistake in its controller, for `simulate(..., run=run)`."""
-    return partial(_run, _rebuilt(), int(wrong))
+def wrong_run(wrong: Wrong = Wrong.NOTHING, slip: Slip = NO_SLIP) -> Callable[..., Any]:
+    """Loop over time with one mistake in its controller, or one slip, for `simulate(..., run=run)`."""
+    return partial(_run, _rebuilt(), int(wrong), slip.as_numbers)

@@ -16,6 +16,7 @@ import findings
 import integrator
 import invariants
 import photovoltaics
+import swings
 import switched_circuit
 import synchronism
 from evidence import Plot, Section
@@ -37,6 +38,7 @@ def sections() -> tuple[Section, ...]:
         closed_forms.section(),
         distorted_grid.section(),
         *findings.sections(),
+        swings.section(),
         synchronism.section(),
     )
 
@@ -77,6 +79,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--check", action="store_true", help="compute, compare with the page, write nothing")
     check = parser.parse_args().check
+    sys.path.append(str(_DOCS / "mutations"))  # how a loop is built with another block
     if not circuit.installed():
         print("ngspice is missing (Debian package ngspice)", file=sys.stderr)
         return 2

@@ -50,7 +50,7 @@ def _deep_sag(scr: float, verdict: str) -> Finding:
     return Finding(scenario, ("--sag", "90%", "--scr", f"{scr:g}", "--xr", "3", "--duration", "309ms"), verdict)
 
 
-LOSS = _deep_sag(3, "not_applicable")
+LOSS = _deep_sag(3, "pass")
 IN_STEP = _deep_sag(5, "fail")
 TOO_WEAK = Finding(
     Scenario(sag=NO_SAG, duration_s=0.309, scr=1.5),

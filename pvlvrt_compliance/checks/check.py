@@ -1,5 +1,6 @@
 """What a check is: a class that judges one kind of requirement in the records of any test."""
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
@@ -19,9 +20,10 @@ class Check(ABC):
     """Judges one kind of requirement; its docstring says in a sentence what it judges.
 
     A class attribute each: ``kind``, its name everywhere (profile key, JSON, JUnit); ``title``, for people;
-    ``requirement``, its data model; ``judges_connection``, whether it says if the inverter may stop: all others have
-    nothing to say of one that did. ``scope`` is that of the class it derives from: this one judges a record as a whole,
-    `StretchCheck` each stretch, `RowCheck` all runs of a row. Nothing else in the program knows a check by name.
+    ``requirement``, its data model; ``judges_connection``, whether it says if the inverter may stop;
+    ``judges_up_to_trip``, whether it looks at what was before a trip, where others have nothing to say. ``scope`` is
+    that of the class it derives from: this one judges a record as a whole, `StretchCheck` each stretch, `RowCheck` all
+    runs of a row. Nothing else in the program knows a check by name.
     """
 
     kind: ClassVar[str]
@@ -29,6 +31,7 @@ class Check(ABC):
     requirement: ClassVar[type[Requirement]]
     scope: ClassVar[Scope] = "record"
     judges_connection: ClassVar[bool] = False
+    judges_up_to_trip: ClassVar[bool] = False
 
     @abstractmethod
     def judge(self, requirement: Any, evidence: "Evidence") -> Verdict:
@@ -55,33 +58,57 @@ class Check(ABC):
 
 
 class StretchCheck(Check):
-    """Judges each stretch from one step of the voltage to the next; the worst verdict is reported."""
+    """Judges each stretch between two steps of what the grid does; the worst verdict is reported and names its stretch.
+
+    ``until`` says what ends it: support is due up to the release, limits hold up to the trip.
+    """
 
     scope = "stretch"
+    judges_up_to_trip = True
+    until: ClassVar[Literal["trip", "release"]] = "release"
 
     @abstractmethod
     def judge_stretch(self, requirement: Any, evidence: "Evidence", stretch: "Stretch") -> Verdict:
         """Judge one stretch; parameters and errors as `judge`. One that is let off leaves the others judged."""
 
+    def stretches(self, requirement: Any, evidence: "Evidence") -> "Sequence[Stretch]":  # noqa: ARG002
+        """The stretches that the requirement concerns: by default those before the voltage stays where it ends up."""
+        return evidence.disturbed_until(self.until)
+
     def judge(self, requirement: Any, evidence: "Evidence") -> Verdict:
-        """Judge all stretches that follow a step of the voltage.
+        """Judge all stretches that the requirement concerns.
 
         Raises
         ------
         NotApplicable
             When there is none, or each is let off; then with the reason of the first.
+        MeasurementError
+            When nothing failed and one stretch cannot be measured.
         """
+        from pvlvrt_compliance.errors import MeasurementError
         from pvlvrt_compliance.evidence.evidence import NotApplicable
+        from pvlvrt_compliance.evidence.stretches import name_of
 
-        verdicts, reasons = [], []
-        for stretch in evidence.voltage_stretches:
+        stretches = self.stretches(requirement, evidence)
+        verdicts: list[Verdict] = []
+        reasons: list[NotApplicable] = []
+        missing: list[MeasurementError] = []
+        for stretch in stretches:
             try:
-                verdicts.append(self.judge_stretch(requirement, evidence, stretch))
+                verdict = self.judge_stretch(requirement, evidence, stretch)
             except NotApplicable as reason:
                 reasons.append(reason)
+            except MeasurementError as error:
+                missing.append(error)
+            else:
+                name = name_of(stretch, evidence) if len(stretches) > 1 else ""
+                text = f"{name}: {verdict.message}" if name else verdict.message
+                verdicts.append(verdict.model_copy(update={"stretch": name, "message": text}))
+        if missing and not any(verdict.status is Status.FAIL for verdict in verdicts):
+            raise missing[0]
         if verdicts:
             return decisive(verdicts)
-        raise reasons[0] if reasons else NotApplicable("the voltage of the grid has no step that anything could follow")
+        raise reasons[0] if reasons else NotApplicable("nothing in this test is what this requirement speaks of")
 
 
 class RowCheck(Check):
@@ -116,9 +143,13 @@ _WORST_FIRST = list(Status)
 
 
 def decisive(verdicts: Sequence[Verdict]) -> Verdict:
-    """The worst of some verdicts; of several that are equally bad the one with the least margin, then the first."""
+    """The worst of some verdicts; of several that are equally bad the one with the least margin, then the first.
+
+    One that failed without a margin (connection was demanded throughout) is worse than any that has one.
+    """
 
     def rank(verdict: Verdict) -> tuple[int, float]:
-        return _WORST_FIRST.index(verdict.status), float("inf") if verdict.margin is None else verdict.margin
+        without = -math.inf if verdict.status is Status.FAIL else math.inf
+        return _WORST_FIRST.index(verdict.status), without if verdict.margin is None else verdict.margin
 
     return min(verdicts, key=rank)

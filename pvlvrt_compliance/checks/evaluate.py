@@ -1,8 +1,10 @@
 """One record against one profile: every requirement becomes a verdict, whatever the record is like."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from pvlvrt_compliance.checks.check import Check, RowCheck
+from pvlvrt_compliance.checks.connection.release import released_at_s
+from pvlvrt_compliance.checks.connection.ride_through import KIND as RIDE_THROUGH
 from pvlvrt_compliance.checks.judging import in_words, judge_safely, limits_safely
 from pvlvrt_compliance.checks.registry import find_check
 from pvlvrt_compliance.checks.validity import reason_not_to_count
@@ -15,7 +17,7 @@ from pvlvrt_compliance.measure.quantities import MeasuredWindows
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.requirements import Requirement
-from pvlvrt_compliance.results import Band, ProfileSummary, Status, TestResult, Verdict, worst
+from pvlvrt_compliance.results import Band, ProfileSummary, Rating, Status, TestResult, Verdict, worst
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Waveforms
 
@@ -53,7 +55,7 @@ def evaluate(
     TestResult
         A verdict on each requirement; what cannot be measured is `not_evaluated` with the reason, nothing is raised.
     """
-    evidence = collect(profile, test, waveforms, nominal, available_power_w, disturbance)
+    evidence = collect(profile, test, waveforms, nominal, available_power_w, disturbance, _release(profile))
     verdicts, bands = _judge_all(profile, test, evidence)
     result = _result(profile, test, verdicts, evidence.disturbance)
     found = {
@@ -61,6 +63,12 @@ def evaluate(
         "measurements": _measurements(evidence),
         "duration_s": waveforms.end_s - waveforms.t0_s,
         "trip_cause": evidence.trip_cause,
+        "rating": Rating(
+            apparent_power_kva=nominal.apparent_power_kva,
+            phase_voltage_v=nominal.phase_voltage_v,
+            frequency_hz=nominal.frequency_hz,
+        ),
+        "available_power_kw": available_power_w / 1e3,
     }
     return result.model_copy(update=found)
 
@@ -107,6 +115,12 @@ def _of_rows(kind: str) -> bool:
         return False
 
 
+def _release(profile: Profile) -> Callable[[Evidence], float | None] | None:
+    """What says when the limits of the voltage let the inverter go."""
+    requirement = profile.requirements.of_kind(RIDE_THROUGH)
+    return None if requirement is None else lambda evidence: released_at_s(requirement, evidence)
+
+
 def _judge_all(profile: Profile, test: TestCase, evidence: Evidence) -> tuple[list[Verdict], tuple[Band, ...]]:
     demands = demands_of(profile, test)
     try:
@@ -115,8 +129,31 @@ def _judge_all(profile: Profile, test: TestCase, evidence: Evidence) -> tuple[li
         reason = str(error)
     if reason is not None:
         return [unjudged(kind, demand, Status.NOT_EVALUATED, reason) for kind, demand in demands], ()
+    demands += _left_out_connection(profile, demands, evidence)
     judged = [_judge(kind, requirement, evidence) for kind, requirement in demands]
-    return [verdict for verdict, _ in judged], tuple(band for _, bands in judged for band in bands)
+    verdicts = [verdict for verdict, _ in judged]
+    if test.expect != "may_trip":
+        verdicts = _not_let_off_altogether(verdicts)
+    return verdicts, tuple(band for _, bands in judged for band in bands)
+
+
+def _left_out_connection(
+    profile: Profile, demands: list[tuple[str, Requirement]], evidence: Evidence
+) -> list[tuple[str, Requirement]]:
+    """Ride-through, where a row leaves it out and the inverter let go: that is judged in every test."""
+    requirement = profile.requirements.of_kind(RIDE_THROUGH)
+    if requirement is None or _stop(evidence) is None or any(kind == RIDE_THROUGH for kind, _ in demands):
+        return []
+    return [(RIDE_THROUGH, requirement)]
+
+
+def _not_let_off_altogether(verdicts: list[Verdict]) -> list[Verdict]:
+    """A test in which nothing at all was judged is no evidence: its first verdict says so."""
+    if not verdicts or any(verdict.status is not Status.NOT_APPLICABLE for verdict in verdicts):
+        return verdicts
+    first = verdicts[0]
+    message = f"nothing in this test was judged; {first.message}"
+    return [first.model_copy(update={"status": Status.NOT_EVALUATED, "message": message}), *verdicts[1:]]
 
 
 def _judge(kind: str, requirement: Requirement, evidence: Evidence) -> tuple[Verdict, tuple[Band, ...]]:
@@ -128,13 +165,8 @@ def _judge(kind: str, requirement: Requirement, evidence: Evidence) -> tuple[Ver
     if check is None:
         reason = f"no installed package has a check for the requirement {kind!r}"
         return unjudged(kind, requirement, Status.NOT_EVALUATED, reason), ()
-    if not check.judges_connection:
-        try:
-            stop = _stop(evidence)
-        except MeasurementError as error:
-            return unjudged(kind, requirement, Status.NOT_EVALUATED, str(error)), ()
-        if stop is not None:
-            return unjudged(kind, requirement, Status.NOT_APPLICABLE, stop), ()
+    if not (check.judges_connection or check.judges_up_to_trip) and (stop := _stop(evidence)) is not None:
+        return unjudged(kind, requirement, Status.NOT_APPLICABLE, stop), ()
     return _with_limits(check, requirement, evidence)
 
 
@@ -144,14 +176,15 @@ def _with_limits(check: Check, requirement: Requirement, evidence: Evidence) -> 
 
 
 def _stop(evidence: Evidence) -> str | None:
-    """How the inverter stopped feeding for good, None when it did not: then the connection alone is judged."""
-    start_s = evidence.disturbance.start_s
-    if (opened_s := evidence.known_opening_s) is not None:
-        cause = f" by the {evidence.trip_cause}" if evidence.trip_cause else ""
-        return f"tripped {opened_s - start_s:.3f} s after the start{cause}"
-    if evidence.blocked_at_s is not None:
-        return f"bridge blocked {evidence.blocked_at_s - start_s:.3f} s after the start"
-    return None
+    """How the inverter let go, None when it did not, or nobody can say."""
+    try:
+        opened_s = evidence.known_opening_s
+    except MeasurementError:  # whoever judges the connection says so
+        return None
+    if opened_s is None:
+        return None
+    cause = f" by the {evidence.trip_cause}" if evidence.trip_cause else ""
+    return f"not judged after the trip at {opened_s:.3f} s{cause}"
 
 
 def _result(profile: Profile, test: TestCase, verdicts: list[Verdict], disturbance: Disturbance) -> TestResult:
@@ -161,6 +194,9 @@ def _result(profile: Profile, test: TestCase, verdicts: list[Verdict], disturban
         title=test.title,
         scenario=test.scenario.model_dump(mode="json"),
         disturbance=disturbance,
+        expect=test.expect,
+        by_s=test.by_s,
+        k_factor=test.k_factor,
         status=worst(verdict.status for verdict in verdicts),
         checks=tuple(verdicts),
         clause=test.clause,

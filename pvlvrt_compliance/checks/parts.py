@@ -25,6 +25,8 @@ class Part(NamedTuple):
     unit: str
     at_s: float
     rests_on: tuple[Marked, ...]
+    uncertainty: float | None = None
+    """What method and measurement leave open, same unit."""
 
     @property
     def margin(self) -> float:
@@ -86,6 +88,8 @@ def judged_by_parts(
         unit=worst.unit,
         at_s=worst.at_s,
         rests_on=worst.rests_on,
+        bound="at_most",
+        uncertainty=worst.uncertainty,
     )
 
 

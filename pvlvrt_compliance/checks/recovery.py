@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from pvlvrt_compliance.checks.verdicts import judged_at_most
 from pvlvrt_compliance.data.marks import Marked, Number
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.evidence.evidence import Evidence, require_finite
+from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require_finite
 from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.measure.response import settled_from
 from pvlvrt_compliance.profile.requirements import Requirement
@@ -13,7 +13,9 @@ from pvlvrt_compliance.results import Verdict
 from pvlvrt_compliance.waveforms.container import Samples
 
 
-def recovered_after_s(evidence: Evidence, from_s: float, target_kw: float) -> float | None:
+def recovered_after_s(
+    evidence: Evidence, from_s: float, target_kw: float, until_s: float | None = None
+) -> float | None:
     """Time from an instant until the one-cycle mean of P stays at or above a power.
 
     Parameters
@@ -24,23 +26,31 @@ def recovered_after_s(evidence: Evidence, from_s: float, target_kw: float) -> fl
         The instant that the time counts from (s, from the start of the record).
     target_kw : float
         The power (kW).
+    until_s : float, optional
+        The instant that ends what is looked at (s), by default the end of the record.
 
     Returns
     -------
     float or None
-        Seconds; 0 when P is never below the power from the instant on, None when the record ends below it.
+        Seconds; 0 when P is never below the power from the instant on, None when what is looked at ends below it.
 
     Raises
     ------
     MeasurementError
         When the record ends before the instant, or P is not finite somewhere from it on.
     """
-    after = evidence.between(from_s, evidence.waveforms.end_s)
+    after = part_after(evidence, from_s, until_s)
     t_s = evidence.t_s[after]
     if not len(t_s):
         raise MeasurementError(f"the record ends at {evidence.waveforms.end_s:.3f} s, before {from_s:.3f} s")
     active_power = require_finite(evidence.active_power_kw[after], "P", t_s)
     return settled_after_s(t_s, active_power < target_kw, from_s)
+
+
+def part_after(evidence: Evidence, from_s: float, until_s: float | None) -> Mask:
+    """Mask of the samples from an instant to before another (s), or to the end of the record, shape (n,)."""
+    after = evidence.between(from_s, evidence.waveforms.end_s)
+    return after if until_s is None else after & (evidence.t_s < until_s)
 
 
 def settled_after_s(t_s: Samples, outside: Mask, from_s: float) -> float | None:
@@ -68,6 +78,7 @@ def judge_recovery(
     time_s: Number,
     rests_on: Iterable[Marked],
     since: str,
+    until_s: float | None = None,
 ) -> Verdict:
     """Verdict on the time that an inverter which stayed connected takes to be back at a share of its power.
 
@@ -77,17 +88,24 @@ def judge_recovery(
         The instant that the time counts from (s, from the start of the record); ``since`` names it.
     fraction, time_s : Number
         The share of P before the disturbance, and the time allowed.
+    until_s : float, optional
+        When the next disturbance begins (s); by default there is none.
 
     Raises
     ------
+    NotApplicable
+        When there was no active power before, or the next disturbance comes before the time is over, and P is not
+        back.
     MeasurementError
         When P cannot be measured, or the record ends before the time is over and P is not back.
     """
-    before_kw, allowed_s = evidence.power_before_kw, time_s.value
+    before_kw, allowed_s = evidence.starting_power_kw, time_s.value
     target = f"{100 * fraction.value:g} % of the {before_kw:.1f} kW before the sag"
-    back_s = recovered_after_s(evidence, from_s, fraction.value * before_kw)
-    observed_s = evidence.waveforms.end_s - from_s
+    back_s = recovered_after_s(evidence, from_s, fraction.value * before_kw, until_s)
+    observed_s = (evidence.waveforms.end_s if until_s is None else until_s) - from_s
     if back_s is None and observed_s < allowed_s:
+        if until_s is not None:
+            raise NotApplicable(f"the next disturbance begins {observed_s:.3f} s after {since}, before P must be back")
         raise MeasurementError(f"the record ends {observed_s:.3f} s after {since}, before P is back at {target}")
     recovered_s = observed_s if back_s is None else back_s
     came = f"P was {'not ' if back_s is None else ''}back at {target}"
@@ -100,4 +118,5 @@ def judge_recovery(
         unit="s",
         at_s=from_s + recovered_s,
         rests_on=rests_on,
+        uncertainty=evidence.half_cycle_s,
     )

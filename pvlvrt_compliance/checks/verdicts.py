@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from pvlvrt_compliance.data.marks import Marked, weakest
 from pvlvrt_compliance.profile.requirements import Requirement
-from pvlvrt_compliance.results import Status, Verdict
+from pvlvrt_compliance.results import Bound, Status, Verdict
 
 
 def judged(
@@ -20,6 +20,9 @@ def judged(
     at_s: float,
     rests_on: Iterable[Marked],
     clause: str = "",
+    bound: Bound | None = None,
+    tolerance: float = 0.0,
+    uncertainty: float | None = None,
 ) -> Verdict:
     """Verdict on a measured value.
 
@@ -34,7 +37,10 @@ def judged(
     at_s : float
         The worst instant, from the start of the record (s).
     rests_on : iterable of Marked
-        The numbers that decided; the weakest of their marks is the verdict's.
+        The numbers that decided; the weakest of their marks is the verdict's. Of a table that decided as a whole, the
+        marks of its rows count, too; where one row decided, give its own (`MarkedTable.mark_of`).
+    bound, tolerance, uncertainty
+        As `Verdict` has them.
     """
     return Verdict(
         check=kind,
@@ -45,8 +51,11 @@ def judged(
         unit=unit,
         at_s=float(at_s),
         clause=clause or requirement.clause,
-        confidence=weakest(number.confidence for number in rests_on),
+        confidence=weakest(mark for number in rests_on for mark in number.marks),
         message=message,
+        bound=bound,
+        tolerance=float(tolerance),
+        uncertainty=uncertainty,
     )
 
 
@@ -61,6 +70,7 @@ def judged_at_most(
     at_s: float,
     rests_on: Iterable[Marked],
     clause: str = "",
+    uncertainty: float | None = None,
 ) -> Verdict:
     """Verdict on a measured value that may be a limit at most; parameters as `judged`."""
     return judged(
@@ -75,6 +85,8 @@ def judged_at_most(
         at_s=at_s,
         rests_on=rests_on,
         clause=clause,
+        bound="at_most",
+        uncertainty=uncertainty,
     )
 
 

@@ -17,7 +17,7 @@ waveforms and writes report.html, junit.xml, results.json and the waveforms.
 Example: [bold]pvlvrt-check --profile iec61400-21 --sag 90%[/bold]
 
 Exit status: 0 all passed, 1 a check failed, 2 wrong usage or profile, 3 something could not be simulated, \
-evaluated or written, 130 interrupted, 143 terminated (SIGTERM).
+evaluated or written, or nothing was judged, 130 interrupted, 143 terminated (SIGTERM).
 """
 
 
@@ -162,6 +162,16 @@ def check(
         str,
         typer.Option(metavar="WHICH", help="Waveforms kept: all, failed or none.", rich_help_panel=_OUTPUT),
     ] = "all",
+    allow_unjudged: Annotated[
+        bool,
+        typer.Option(
+            "--allow-unjudged",
+            metavar="",
+            help="What could not be judged no longer makes the exit status 3, and is skipped in junit.xml. Example:"
+            " --profile all --sag 50% --allow-unjudged",
+            rich_help_panel=_OUTPUT,
+        ),
+    ] = False,
     exit_zero: Annotated[
         bool,
         typer.Option("--exit-zero", metavar="", help="End with 0 whatever the verdicts.", rich_help_panel=_OUTPUT),
@@ -199,6 +209,7 @@ def check(
         output=output,
         csv=csv,
         waveforms=waveforms,
+        allow_unjudged=allow_unjudged,
         exit_zero=exit_zero,
         quiet=quiet,
         command=context.obj or ("pvlvrt-check",),

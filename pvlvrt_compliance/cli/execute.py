@@ -21,7 +21,7 @@ from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.report import console, html, junit, results_json
 from pvlvrt_compliance.report.decimation import buckets_for
 from pvlvrt_compliance.report.figure import test_figure
-from pvlvrt_compliance.results import EXIT_STATUS, Results, TestResult, conclude
+from pvlvrt_compliance.results import UNSETTLED, Results, TestResult, conclude, exit_status
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.study.provenance import created_at, provenance
 from pvlvrt_compliance.study.selection import Assignment
@@ -68,7 +68,7 @@ def execute(request: Request, job: Job) -> int:
     except OSError as error:
         said = f"standard output cannot be written: {error.strerror or error}"
         raise OutputError(f"{said}; the reports are in {run.output.folder}: {console.summary_line(results)}") from None
-    return 0 if request.exit_zero else EXIT_STATUS[results.status]
+    return 0 if request.exit_zero else exit_status(results)
 
 
 def _own_controller(request: Request, job: Job) -> "ForeignSimulator | None":
@@ -162,7 +162,7 @@ class _Run:
         ]
         order = [profile.id for profile in job.profiles]
         finished = sorted(self.finished, key=lambda test: order.index(test.profile))
-        return conclude(finished, summaries, origin)
+        return conclude(finished, summaries, origin, allow_unjudged=self.request.allow_unjudged)
 
     def write_reports(self) -> Results:
         """Stage all reports."""
@@ -199,7 +199,7 @@ class _Run:
 
     def _wants_waveforms(self, result: TestResult) -> bool:
         kept = self.request.waveforms
-        return kept == KEEP_ALL or (kept == KEEP_FAILED and EXIT_STATUS[result.status] != 0)
+        return kept == KEEP_ALL or (kept == KEEP_FAILED and result.status in UNSETTLED)
 
     def _file_of(self, waveforms: Waveforms, result: TestResult, item: Assignment, nominal: Nominal) -> str:
         """Path of the record in the output folder; it is written once for all tests of its scenario."""
@@ -211,6 +211,7 @@ class _Run:
         return f"{WAVEFORMS}/{self.files[scenario]}.cfg"
 
     def _write(self, waveforms: Waveforms, name: str, item: Assignment, nominal: Nominal) -> None:
+        waveforms = waveforms.with_settling
         stem = self.output.waveforms / name
         with self.output.writing(stem.with_name(f"{name}.dat")):
             write_comtrade(

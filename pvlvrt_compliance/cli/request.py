@@ -67,6 +67,7 @@ class Request(NamedTuple):
     output: str
     csv: bool
     waveforms: str
+    allow_unjudged: bool
     exit_zero: bool
     quiet: bool
     command: tuple[str, ...]

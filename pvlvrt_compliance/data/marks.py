@@ -5,10 +5,10 @@ and on a tolerance that this project chose.
 """
 
 import json
-from collections.abc import Iterable
-from typing import Annotated, Any, Generic, Literal, TypeVar, get_args
+from collections.abc import Iterable, Iterator
+from typing import Annotated, Any, Generic, Literal, Self, TypeVar, get_args
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 Confidence = Literal["confirmed", "code", "secondary", "derived", "inferred", "memory", "memory-low", "chosen"]
 
@@ -38,6 +38,56 @@ class Marked(Frozen):
 
     confidence: Confidence
     source: str = Field(min_length=1, description="document and place, or the reason for a chosen number")
+
+    @property
+    def marks(self) -> tuple[Confidence, ...]:
+        """Its mark, and those that its rows carry in its place."""
+        return (self.confidence,)
+
+
+class Mark(Marked):
+    """A mark alone."""
+
+
+class MarkedRow(Frozen):
+    """A row of a table, with a mark of its own where that of the table is not its."""
+
+    confidence: Confidence | None = Field(default=None, description="none: the table's")
+    source: str | None = Field(default=None, min_length=1, description="goes with confidence")
+
+    @model_validator(mode="after")
+    def _whole_mark(self) -> Self:
+        if (self.confidence is None) != (self.source is None):
+            given, missing = ("confidence", "source") if self.source is None else ("source", "confidence")
+            raise ValueError(f"{missing}: missing; a row with {given} of its own has both")
+        return self
+
+
+def own_mark(row: Any) -> Mark | None:
+    """The mark that a row of a table carries itself, None where the table's holds."""
+    if isinstance(row, (Marked, MarkedRow)) and row.confidence is not None and row.source is not None:
+        return Mark(confidence=row.confidence, source=row.source)
+    return None
+
+
+class MarkedTable(Marked):
+    """Rows under one mark; a row may carry another one."""
+
+    @property
+    def marked_rows(self) -> Iterable[Any]:
+        """What may carry a mark of its own."""
+        rows: Iterable[Any] = getattr(self, "rows", ())
+        return rows
+
+    @property
+    def marks(self) -> tuple[Confidence, ...]:
+        """The table's mark, and those that its rows carry in its place."""
+        own = map(own_mark, self.marked_rows)
+        return (self.confidence, *(mark.confidence for mark in own if mark is not None))
+
+    def mark_of(self, row: Any) -> Mark:
+        """The mark of one row: its own, else the table's."""
+        return own_mark(row) or Mark(confidence=self.confidence, source=self.source)
 
 
 class Number(Marked):
@@ -91,16 +141,25 @@ Fraction = Annotated[Number, AfterValidator(_fraction)]
 
 
 def marks_in(item: Any, name: str = "") -> list[tuple[str, Marked]]:
-    """All marked items inside a model, each with its dotted name, in the order of definition."""
-    if isinstance(item, Marked):
-        return [(name, item)]
+    """All marked items inside a model, each with its dotted name, in the order of definition.
+
+    A row that carries a mark of its own is one of them: ``bands.rows[1]``.
+    """
+    own = item if isinstance(item, Marked) else own_mark(item)
+    found = [(name, own)] if own is not None else []
+    return [*found, *(inner for key, part in _parts(item, name) for inner in marks_in(part, key))]
+
+
+def _parts(item: Any, name: str) -> Iterator[tuple[str, Any]]:
+    """What an item holds, each part with its dotted name as a file spells it; of lists, the rows of tables alone."""
+    parts: Iterable[tuple[Any, Any]] = item.items() if isinstance(item, dict) else ()
     if isinstance(item, BaseModel):
-        parts: Iterable[tuple[Any, Any]] = item
-    elif isinstance(item, dict):
-        parts = item.items()
-    else:
-        return []
-    return [found for key, part in parts for found in marks_in(part, f"{name}.{key}" if name else str(key))]
+        parts = [(field.alias or key, getattr(item, key)) for key, field in type(item).model_fields.items()]
+    for key, part in parts:
+        inner = f"{name}.{key}" if name else str(key)
+        if isinstance(part, tuple) and isinstance(item, MarkedTable):
+            yield from ((f"{inner}[{k}]", row) for k, row in enumerate(part))
+        yield inner, part
 
 
 def canonical_json(item: BaseModel) -> str:

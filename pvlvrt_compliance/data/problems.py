@@ -29,8 +29,8 @@ _SHOW_INPUT = frozenset(_WORDS) - {"missing", "string_too_short"}
 _LONGEST_INPUT = 60
 _LONGEST_KEY = 200
 
-A_NUMBER, A_TABLE = "a number", "a table"
-FORMS = frozenset({A_NUMBER, A_TABLE})
+A_NUMBER, A_LIST, A_TABLE = "a number", "a list", "a table"
+FORMS = frozenset({A_NUMBER, A_LIST, A_TABLE})
 """Names of the forms of a value that is one or the other; blanks keep them apart from keys."""
 
 _UNITS = {

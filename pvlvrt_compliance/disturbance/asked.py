@@ -2,7 +2,7 @@
 
 import cmath
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from pvlvrt_compliance.disturbance.model import (
@@ -138,6 +138,7 @@ def _stretches(
 ) -> Iterator[Stretch]:
     last_s = max([scenario.end_s, *steps_s])
     bounds = [min([0.0, *steps_s]), *steps_s, last_s]
+    irradiance = irradiance_points(scenario)
     for begin_s, end_s in pairwise(dict.fromkeys(bounds)):
         entry = next(entry for entry in reversed(table) if entry.t_s <= begin_s)
         first = _voltage(_sequences_at(entry, begin_s))
@@ -153,8 +154,32 @@ def _stretches(
             voltage_at_end=last,
             frequency_hz=frequency_hz,
             rocof_hz_s=entry.rocof_hz_s,
+            irradiance_w_m2=_irradiance_at(irradiance, begin_s),
+            ramps=tuple(_ramps(scenario, entry, irradiance, begin_s, end_s)),
             in_words=stretch_in_words(scenario, begin_s) or state_in_words(kind, first, last, other_hz),
         )
+
+
+def _irradiance_at(points: Sequence[tuple[float, float]], t_s: float) -> float:
+    """Irradiance at an instant (W/m2): straight lines between points, of two at one instant the later."""
+    before = [point for point in points if point[0] <= t_s] or [points[0]]
+    after = next((point for point in points if point[0] > t_s), before[-1])
+    (begin_s, first), (end_s, last) = before[-1], after
+    return first if end_s <= begin_s else first + (last - first) * (t_s - begin_s) / (end_s - begin_s)
+
+
+def _ramps(
+    scenario: Scenario, entry: Entry, irradiance: Sequence[tuple[float, float]], begin_s: float, end_s: float
+) -> Iterator[Moved]:
+    """What moves all along a stretch; a recording may hold anything."""
+    if any(entry.slope_pu_s):
+        yield "voltage"
+    if entry.rocof_hz_s:
+        yield "frequency"
+    if any(t < end_s and begin_s < until_s and first != last for (t, first), (until_s, last) in pairwise(irradiance)):
+        yield "irradiance"
+    if any(isinstance(event, Recording) and scenario.start_s + event.t_s <= begin_s for event in scenario.events):
+        yield "recording"
 
 
 def _voltage(sequences: Sequences) -> Voltage:

@@ -75,6 +75,8 @@ class Stretch(_Frozen):
     )
     frequency_hz: FiniteFloat | None = Field(default=None, description="at the beginning; none: not known")
     rocof_hz_s: FiniteFloat = 0.0
+    irradiance_w_m2: FiniteFloat | None = Field(default=None, description="at the beginning; none: not known")
+    ramps: tuple[Moved, ...] = Field(default=(), description="what moves all along it: means are of no one level")
     in_words: str = ""
 
     def voltage_at(self, t_s: float) -> Voltage:
@@ -89,6 +91,12 @@ class Stretch(_Frozen):
             negative_pu=first.negative_pu + share * (last.negative_pu - first.negative_pu),
             zero_pu=first.zero_pu + share * (last.zero_pu - first.zero_pu),
         )
+
+    def cut(self, begin_s: float, end_s: float) -> "Stretch":
+        """The part of the stretch between two instants (s); beyond its end it goes on as it ended."""
+        last = None if self.voltage_at_end is None else self.voltage_at(min(end_s, self.end_s))
+        moved = {"voltage": self.voltage_at(begin_s), "voltage_at_end": last} if last is not None else {}
+        return self.model_copy(update={"begin_s": begin_s, "end_s": end_s, **moved})
 
 
 class Fact(_Frozen):
@@ -160,8 +168,15 @@ class Disturbance(_Frozen):
         """What follows each step of the voltage up to the next, the last to the end of the record (s)."""
         return tuple(
             self.stretch_at(begin_s).model_copy(update={"end_s": until_s, "voltage_at_end": None})
-            for begin_s, until_s in pairwise((*self.voltage_steps_s, end_s))
-            if begin_s < until_s
+            for begin_s, until_s in pairwise((*(t for t in self.voltage_steps_s if t < end_s), end_s))
+        )
+
+    def following_stretches(self, end_s: float) -> tuple[Stretch, ...]:
+        """What follows each step of anything from the start of the test on, the last to the end of the record (s)."""
+        begins_s = sorted({self.start_s, *(step.at_s for step in self.steps if step.at_s > self.start_s)})
+        return tuple(
+            self.stretch_at(begin_s).cut(begin_s, until_s)
+            for begin_s, until_s in pairwise((*(t for t in begins_s if t < end_s), end_s))
         )
 
     def is_frequency_steady(self, begin_s: float, end_s: float) -> bool:

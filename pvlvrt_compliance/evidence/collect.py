@@ -1,5 +1,7 @@
 """From a record and what is known about its test to the evidence that checks see."""
 
+from collections.abc import Callable
+
 from pvlvrt_compliance.disturbance.asked import disturbance_asked
 from pvlvrt_compliance.disturbance.model import Disturbance, NormalVoltage
 from pvlvrt_compliance.evidence.evidence import Evidence, floors_of
@@ -19,6 +21,7 @@ def collect(
     nominal: Nominal,
     available_power_w: float,
     disturbance: Disturbance | None = None,
+    release: Callable[[Evidence], float | None] | None = None,
 ) -> Evidence:
     """Measure a record and put it together with what is known about its test; parameters as `checks.evaluate`."""
     rules, disturbance = window_rules(profile), disturbance or disturbance_of(profile, test)
@@ -31,11 +34,15 @@ def collect(
             waveforms, nominal, disturbance.start_s, disturbance.clear_s, rules, floors_of(profile.thresholds)
         ),
         rules=rules,
+        cell_temperature_c=test.scenario.cell_temperature_c,
         blocked_below_pu=profile.conditions.blocked_below_pu.value,
         k_factor=test.k_factor,
         detection=profile.detection,
         requirements=profile.requirements,
         thresholds=profile.thresholds,
+        expect=test.expect,
+        by_s=test.by_s,
+        release=release,
     )
 
 

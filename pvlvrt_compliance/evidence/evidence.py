@@ -1,32 +1,36 @@
-"""What a check sees of one test: the record, its measurements and the series made from it."""
+"""What a check sees of one test: the record, and what is known about its test."""
 
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
-from pvlvrt_compliance.disturbance.model import Stretch
+from pvlvrt_compliance.disturbance.model import Moved, Stretch
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.evidence.series import Mask, Series
-from pvlvrt_compliance.measure.quantities import MeasuredStretch, MeasuredWindows, WindowMeasurements
-from pvlvrt_compliance.measure.response import settled_from
-from pvlvrt_compliance.measure.summary import Floors, measure_span
-from pvlvrt_compliance.measure.windows import Span, WindowRules, standard_windows, stretch_window
-from pvlvrt_compliance.profile.procedure import Detection
+from pvlvrt_compliance.evidence.record import NotApplicable, Record, floors_of, require_finite, required
+from pvlvrt_compliance.evidence.series import Mask
+from pvlvrt_compliance.measure.quantities import WindowMeasurements
+from pvlvrt_compliance.measure.summary import measure_span
+from pvlvrt_compliance.measure.windows import Span, settled_window
+from pvlvrt_compliance.profile.procedure import Detection, Expect
 from pvlvrt_compliance.profile.requirements import Requirements
-from pvlvrt_compliance.profile.thresholds import Thresholds
-from pvlvrt_compliance.waveforms.breaker import opened_at_s
 from pvlvrt_compliance.waveforms.container import Samples
 from pvlvrt_compliance.waveforms.joining import window_on_one_grid
-from pvlvrt_compliance.waveforms.trip_causes import in_words
 
+__all__ = ["ANY_LIGHT", "Evidence", "NotApplicable", "Until", "floors_of", "require_finite", "required"]
 
-class NotApplicable(Exception):  # noqa: N818 - it is a verdict, not an error
-    """Raised by a check that the code lets off in this test; the text is the reason."""
+Until = Literal["trip", "release"]
+"""What ends that which is judged: support is due up to the release, limits hold up to the trip."""
+
+ANY_LIGHT: tuple[Moved, ...] = ("irradiance",)
+"""What may move in a window whose quantity does not depend on it: reactive power and current."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Evidence(Series):
+class Evidence(Record):
     """One record and its series, with what is known about its test.
 
     Parameters
@@ -39,203 +43,142 @@ class Evidence(Series):
         What the grid did.
     available_power_w : float
         What the PV array could give before the disturbance (W).
-    measurements : MeasuredWindows
-        Of the windows before, during and after the sag.
-    rules : WindowRules
-        Where those windows lie.
-    blocked_below_pu : float
-        Phase currents that all stay below this to the end of the record show a blocked bridge (pu).
+    measurements, rules, blocked_below_pu
+        As `Record` has them.
+    cell_temperature_c : float, optional
+        Of the PV array (degrees C).
     k_factor : float, optional
         K that this test was run with, in place of the requirement's.
     detection : Detection, optional
         The profile's thresholds of a voltage event.
     requirements : Requirements, optional
         All that the profile demands, for checks that depend on each other's demands.
+    expect, by_s : optional
+        What the row of the test table demands (`TestRow`); none of a sag of the user's own.
+    release : function, optional
+        Says of evidence when the limits of the voltage let the inverter go (s), None when they never do.
     """
 
     available_power_w: float
-    measurements: MeasuredWindows
-    rules: WindowRules
-    blocked_below_pu: float
+    cell_temperature_c: float | None = None
     k_factor: float | None = None
     detection: Detection | None = None
     requirements: Requirements | None = None
+    expect: Expect | None = None
+    by_s: float | None = None
+    release: "Callable[[Evidence], float | None] | None" = None
 
     @cached_property
-    def disconnected_at_s(self) -> float | None:
-        """First instant the breaker is open (s), None when it never opens.
+    def released_at_s(self) -> float | None:
+        """When the limits of the voltage let the inverter go (s), None when they never do, or nobody says so.
 
         Raises
         ------
         MeasurementError
-            When the record does not say, or not everywhere.
+            When a voltage is missing or not finite.
         """
-        require_finite(self.joined(lambda segment: segment["connected"]), "connected", self.t_s)
-        return opened_at_s(self.waveforms)
+        return None if self.release is None else self.release(self)
 
-    @cached_property
-    def trip_cause(self) -> str | None:
-        """What opened the breaker, in words; None when it stays closed or the record does not say."""
-        if "trip_cause" not in self.waveforms.names:
-            return None
-        codes = self.joined(lambda segment: segment["trip_cause"])
-        return in_words(int(codes.max())) if codes.max() > 0 else None
+    def stretches_until(self, until: Until) -> tuple[Stretch, ...]:
+        """What follows each step of anything, up to the trip, or the release if that comes first.
 
-    @cached_property
-    def blocked_at_s(self) -> float | None:
-        """Instant from which no phase carries current while the breaker stays closed (s), None when there is none.
-
-        A record without ``connected`` is taken to have its breaker closed.
+        Raises
+        ------
+        NotApplicable
+            When nothing is left, with what ended it.
+        MeasurementError
+            When the record does not say everywhere whether the breaker is closed.
         """
-        if self.known_opening_s is not None:
-            return None
-        current = require_finite(self.current_pu, "the current", self.t_s)
-        blocked_from = settled_from(np.asarray((np.abs(current) >= self.blocked_below_pu).any(axis=0)))
-        return float(self.t_s[blocked_from]) if blocked_from else None
+        end_s = self.record_end_s
+        reason = "nothing of the record is left to judge"
+        if (tripped_s := self.known_opening_s) is not None and tripped_s < end_s:
+            end_s, reason = tripped_s, f"not judged after the trip at {tripped_s:.3f} s"
+        released_s = self.released_at_s if until == "release" else None
+        if released_s is not None and released_s < end_s:
+            end_s, reason = released_s, f"not judged from {released_s:.3f} s on, when the inverter may let go"
+        if end_s <= self.disturbance.start_s:
+            raise NotApplicable(reason)
+        return self.disturbance.following_stretches(end_s)
 
-    @property
-    def is_switched(self) -> bool:
-        """Whether the record says when the breaker is closed."""
-        return "connected" in self.waveforms.names
+    def disturbed_until(self, until: Until) -> tuple[Stretch, ...]:
+        """Of those, the ones before the voltage has come to where it stays: levels of sags and swells, gaps between.
 
-    @property
-    def known_opening_s(self) -> float | None:
-        """As `disconnected_at_s`; also None where the record says nothing of the breaker."""
-        return self.disconnected_at_s if self.is_switched else None
+        Of a test without a step of the voltage, all.
 
-    @cached_property
-    def no_load_pu(self) -> tuple[float, float] | None:
-        """Mean V+ and V- of the source without the inverter's current while the sag lasts (pu).
-
-        In the during-window; where the sag is too short for one, from one cycle after the start to clearing. None
-        where not even one cycle fits.
+        Raises
+        ------
+        NotApplicable, MeasurementError
+            As `stretches_until`.
         """
-        inside = self.between(*self._no_load_span)
-        if not inside.any():
-            return None
-        positive, negative = (
-            require_finite(self.sequence_pu("u0", index)[inside], "u0", self.t_s[inside]) for index in (0, 1)
-        )
-        step_s = self.step_s[inside]
-        return float(np.average(positive, weights=step_s)), float(np.average(negative, weights=step_s))
+        last_s = self.disturbance.end_s if self.disturbance.voltage_steps_s else self.record_end_s
+        return tuple(part for part in self.stretches_until(until) if part.begin_s < last_s)
 
-    @property
-    def asked_pu(self) -> tuple[float, float]:
-        """Mean V+ and V- that the source was asked for where `no_load_pu` is measured (pu)."""
-        asked = [self.disturbance.no_load(float(t)) for t in np.linspace(*self._no_load_span, 101)]
-        return (
-            float(np.mean([voltage.positive_pu for voltage in asked])),
-            float(np.mean([voltage.negative_pu for voltage in asked])),
-        )
+    def departed_until(self, until: Until) -> tuple[Stretch, ...]:
+        """Of those, the ones that are no gap: not at the normal voltage of before the disturbance.
 
-    @property
-    def _no_load_span(self) -> Span:
-        return self.during_span or Span(self.disturbance.start_s + 1 / self.frequency_hz, self.disturbance.clear_s)
+        Of a test without a step of the voltage, all.
 
-    @property
-    def voltage_stretches(self) -> tuple[Stretch, ...]:
-        """What follows each step of the voltage up to the next, the last to the end of the record."""
-        return self.disturbance.voltage_stretches(self.waveforms.end_s)
+        Raises
+        ------
+        NotApplicable, MeasurementError
+            As `stretches_until`.
+        """
+        parts = self.disturbed_until(until)
+        if not self.disturbance.voltage_steps_s:
+            return parts
+        before = self.disturbance.no_load(self.waveforms.t0_s)
+        return tuple(part for part in parts if part.kind != "normal" or part.ramps or part.voltage != before)
+
+    def window_of(self, stretch: Stretch, despite: tuple[Moved, ...] = ()) -> WindowMeasurements:
+        """What is measured in a stretch once it is settled, as `during` is in a sag.
+
+        Parameters
+        ----------
+        stretch : Stretch
+        despite : tuple, optional
+            What may ramp in it: means of what is measured do not depend on it.
+
+        Raises
+        ------
+        NotApplicable
+            When something else ramps in the stretch, or it is too short for a whole cycle.
+        MeasurementError
+            When the record cannot be measured in it.
+        """
+        if moving := [what for what in stretch.ramps if what not in despite]:
+            raise NotApplicable(f"the {' and the '.join(moving)} moves from {stretch.begin_s:.3f} s on")
+        span = settled_window(stretch.begin_s, stretch.end_s, self.frequency_hz, self.rules)
+        if span is None:
+            length_s = stretch.end_s - stretch.begin_s
+            raise NotApplicable(f"the {length_s:.3f} s from {stretch.begin_s:.3f} s on leave no whole cycle to measure")
+        if span not in self._windows:
+            found = self.measurements.during if span == self.during_span else None
+            inside = Span(stretch.begin_s, stretch.end_s)
+            self._windows[span] = found or measure_span(
+                self.waveforms, self.nominal, self.frequency_hz, span, inside, floors_of(self.thresholds)
+            )
+        if (window := self._windows[span]) is None:
+            window_on_one_grid(self.waveforms, *span)  # raises with the reason where there is one
+            raise MeasurementError(f"the window from {span.start_s:.3f} s to {span.end_s:.3f} s cannot be measured")
+        return window
+
+    def windows_of(self, stretches: Iterable[Stretch], despite: tuple[Moved, ...] = ()) -> Iterator[WindowMeasurements]:
+        """Those of some stretches that can be measured; parameters as `window_of`."""
+        for stretch in stretches:
+            with suppress(NotApplicable, MeasurementError):
+                yield self.window_of(stretch, despite)
 
     @cached_property
-    def measured_stretches(self) -> tuple[MeasuredStretch, ...]:
-        """Each of these stretches, measured in its own settled window."""
-        return tuple(self._measured(part) for part in self.voltage_stretches)
+    def _windows(self) -> dict[Span, WindowMeasurements | None]:
+        return {}
 
-    def _measured(self, part: Stretch) -> MeasuredStretch:
-        settled = self.thresholds.settled_cycles.value
-        span = stretch_window(part.begin_s, part.end_s, self.frequency_hz, settled, self.rules)
-        inside = Span(part.begin_s, part.end_s)
-        window = span and measure_span(
-            self.waveforms, self.nominal, self.frequency_hz, span, inside, floors_of(self.thresholds)
-        )
-        return MeasuredStretch(begin_s=part.begin_s, end_s=part.end_s, in_words=part.in_words, window=window)
+    @property
+    def power_uncertainty_kva(self) -> float:
+        """What method and measurement leave open of a power (kW or kvar)."""
+        return self.thresholds.uncertainty_power_pu.value * self.nominal.apparent_power_kva
 
     def is_event(self, v_positive_pu: Samples) -> Mask:
         """Where a V+ (pu) is a sag or a swell by the profile's thresholds; without them, everywhere. Shape of V+."""
         if self.detection is None:
             return np.ones(np.shape(v_positive_pu), dtype=np.bool_)
         return np.asarray(self.detection.is_event(v_positive_pu), dtype=np.bool_)
-
-    @property
-    def power_before_kw(self) -> float:
-        """Mean P in the window before the disturbance (kW).
-
-        Raises
-        ------
-        MeasurementError
-            When it could not be measured.
-        """
-        before = self.measurements.before
-        return required(before.active_power_kw if before else None, "P before the sag")
-
-    def before(self) -> WindowMeasurements:
-        """What was measured in the window before the disturbance.
-
-        Raises
-        ------
-        MeasurementError
-            When the record cannot be measured in it.
-        """
-        if self.measurements.before is None:
-            raise MeasurementError("the window before the sag cannot be measured")
-        return self.measurements.before
-
-    @property
-    def during_span(self) -> Span | None:
-        """The during-window, None when the sag is too short for one."""
-        start_s, clear_s = self.disturbance.start_s, self.disturbance.clear_s
-        return standard_windows(start_s, clear_s, self.waveforms.end_s, self.frequency_hz, self.rules).during
-
-    def during(self) -> WindowMeasurements:
-        """What was measured in the during-window.
-
-        Raises
-        ------
-        NotApplicable
-            When the sag is too short for one.
-        MeasurementError
-            When there is one, but the record cannot be measured in it.
-        """
-        if self.measurements.during is not None:
-            return self.measurements.during
-        if self.during_span is None:
-            raise NotApplicable(f"the sag of {self.disturbance.duration_s:.3f} s leaves no whole cycle to measure")
-        window_on_one_grid(self.waveforms, *self.during_span)  # raises with the reason where there is one
-        raise MeasurementError("the window during the sag cannot be measured")
-
-
-def floors_of(thresholds: Thresholds) -> Floors:
-    """From where on the quantities of a window are stated."""
-    return Floors(
-        voltage_pu=thresholds.window_voltage_floor_pu.value,
-        fundamental_pu=thresholds.least_fundamental_fraction.value,
-        other_frequency_hz=thresholds.other_frequency_hz.value,
-    )
-
-
-def require_finite(values: Samples, what: str, t_s: Samples) -> Samples:
-    """Return the values, shape (..., n), when all are finite.
-
-    Raises
-    ------
-    MeasurementError
-        Naming the first instant at which one is not.
-    """
-    bad = np.atleast_2d(~np.isfinite(values)).any(axis=0)
-    if bad.any():
-        raise MeasurementError(f"{what} has no finite value at {t_s[bad.argmax()]:.3f} s")
-    return values
-
-
-def required(value: float | None, what: str) -> float:
-    """Return a measured value that a verdict needs.
-
-    Raises
-    ------
-    MeasurementError
-        When it could not be measured.
-    """
-    if value is None:
-        raise MeasurementError(f"{what} could not be measured")
-    return value

@@ -77,3 +77,12 @@ def largest_deviation(evidence: Evidence) -> tuple[float, float]:
     if deviation.max() <= (near_hz := evidence.thresholds.frequency_deviation_hz.value):
         raise NotApplicable(f"the frequency stays within {near_hz:g} Hz of nominal")
     return float(frequency[at]), float(evidence.t_s[at])
+
+
+def ends_at_another_frequency(evidence: Evidence) -> tuple[float, float] | None:
+    """Frequencies before the disturbance and at the end of the record (Hz), None where they are alike or not known."""
+    before, after = evidence.measurements.before, evidence.measurements.after
+    first, last = (window.frequency_hz if window else None for window in (before, after))
+    if first is None or last is None or abs(last - first) <= evidence.thresholds.frequency_deviation_hz.value:
+        return None
+    return first, last

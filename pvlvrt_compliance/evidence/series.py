@@ -158,6 +158,18 @@ class Series:
         )
 
     @cached_property
+    def half_cycle_kva(self) -> Power:
+        """Half-cycle means of P (kW) and Q (kvar), which leave out what swings at 2f and its multiples, shape (n,)."""
+        return Power(
+            *self._one_cycle(
+                lambda segment: one_cycle_mean(
+                    np.stack(instantaneous_power(segment)) / 1e3, segment.dt_s, 2 * self._window_hz(segment)
+                ),
+                1 if self._is_steady else _STEERING_CYCLES,
+            )
+        )
+
+    @cached_property
     def instantaneous_kva(self) -> Power:
         """Instantaneous P (kW) and Q (kvar), shape (n,) each."""
         return Power(*self.joined(lambda segment: np.stack(instantaneous_power(segment))) / 1e3)

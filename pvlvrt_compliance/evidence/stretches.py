@@ -2,10 +2,42 @@
 
 import numpy as np
 
+from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.measure.durations import median_over_time
 from pvlvrt_compliance.waveforms.container import Samples
+
+_BALANCED_PU = 0.005  # V- that two digits show as none
+_ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
+
+
+def name_of(stretch: Stretch, evidence: Evidence) -> str:
+    """What a message calls a stretch: which of its kind it is, its voltage and its times."""
+    alike = [
+        part.begin_s
+        for part in evidence.disturbance.following_stretches(evidence.record_end_s)
+        if part.kind == stretch.kind and part.begin_s <= stretch.begin_s
+    ]
+    number = max(len(alike), 1)
+    ordinal = _ORDINALS[number - 1] if number <= len(_ORDINALS) else f"{number}th"
+    kind = "time of normal voltage" if stretch.kind == "normal" else stretch.kind
+    positive, negative = stretch.voltage.positive_pu, stretch.voltage.negative_pu
+    level = f"{positive:.2f} pu" if negative < _BALANCED_PU else f"V+ {positive:.2f} pu, V- {negative:.2f} pu"
+    return f"{ordinal} {kind}, {level}, {stretch.begin_s:.2f} s to {stretch.end_s:.2f} s"
+
+
+def name_at(evidence: Evidence, at_s: float | None) -> str:
+    """Name of the stretch up to a trip that an instant lies in (s); empty before the first, and of a sole one."""
+    begun = evidence.stretches_until("trip")
+    here = [part for part in begun if at_s is not None and part.begin_s <= at_s]
+    return name_of(here[-1], evidence) if len(evidence.disturbed_until("trip")) > 1 and here else ""
+
+
+def surely_over_s(evidence: Evidence, end_s: float) -> float:
+    """Up to when a stretch is surely not yet what follows (s): a step that was found in a record is a cycle late."""
+    is_found = evidence.disturbance.origin == "found" and any(step.at_s == end_s for step in evidence.disturbance.steps)
+    return end_s - 1 / evidence.frequency_hz if is_found else end_s
 
 
 def between_steps_s(evidence: Evidence, at_s: float) -> tuple[float, float]:

@@ -1,5 +1,7 @@
 """The voltages that codes speak of, as series of a record."""
 
+from typing import Literal
+
 from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.measure.phase_quantities import voltage_amplitude
 from pvlvrt_compliance.profile.curves import VoltageQuantity
@@ -16,14 +18,21 @@ NAMES: dict[VoltageQuantity, str] = {
 """Each quantity in words."""
 
 
-def voltage_quantity_pu(evidence: Evidence, quantity: VoltageQuantity) -> Samples:
+Place = Literal["terminals", "no_load"]
+"""Where a voltage is looked at: with the inverter's current, or of the source without it."""
+
+
+def voltage_quantity_pu(evidence: Evidence, quantity: VoltageQuantity, place: Place = "terminals") -> Samples:
     """Amplitude of the fundamental of the cycle that ends at each sample (pu), shape (n,); see `voltage_amplitude`.
+
+    Without the inverter's current where ``place`` says so; in a record that has no such voltages, at the terminals.
 
     Raises
     ------
     MeasurementError
         When a voltage is missing.
     """
+    phasors = evidence.no_load_phasors_pu if place == "no_load" else None
     if quantity == "positive_sequence":
-        return evidence.voltage_positive_pu
-    return voltage_amplitude(evidence.voltage_phasors_pu, quantity)
+        return evidence.voltage_positive_pu if phasors is None else evidence.sequence_pu("u0", 0)
+    return voltage_amplitude(evidence.voltage_phasors_pu if phasors is None else phasors, quantity)

@@ -111,6 +111,19 @@ def stretch_window(
     return _shorten(usual, frequency_hz) or _shorten(short, frequency_hz)
 
 
+def settled_window(
+    begin_s: float, end_s: float, frequency_hz: float, rules: WindowRules = STANDARD_RULES
+) -> Span | None:
+    """Window of a stretch once it is settled, in whole cycles, its end kept; parameters as `stretch_window`.
+
+    As `during` lies in a sag, or, where that leaves no whole cycle, up to the end of the stretch. None where not even
+    that leaves one.
+    """
+    from_s = begin_s + rules.during_start_s
+    usual, short = (_shorten(Span(from_s, t), frequency_hz) for t in (end_s - rules.during_end_s, end_s))
+    return usual or short
+
+
 def _shorten(span: Span, frequency_hz: float) -> Span | None:
     cycles = math.floor((span.end_s - span.start_s) * frequency_hz + _CYCLE_SLACK)
     return Span(span.end_s - cycles / frequency_hz, span.end_s) if cycles >= 1 else None

@@ -72,6 +72,8 @@ def expand(
                 k_factor=row.k_factor,
                 checks=row.checks,
                 long=row.long,
+                expect=row.expect,
+                by_s=row.by_s,
             )
 
 

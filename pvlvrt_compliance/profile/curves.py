@@ -1,12 +1,14 @@
 """Ride-through envelopes and support curves: broken lines with a mark."""
 
 from enum import StrEnum
+from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Discriminator, Field, Tag
 
-from pvlvrt_compliance.data.marks import Marked
+from pvlvrt_compliance.data.marks import CONFIDENCES, Mark, Marked, MarkedTable
+from pvlvrt_compliance.data.problems import A_LIST, A_TABLE
 
 if TYPE_CHECKING:  # numpy takes longer to import than a profile takes to read: only what evaluates a curve imports it
     import numpy as np
@@ -14,6 +16,26 @@ if TYPE_CHECKING:  # numpy takes longer to import than a profile takes to read: 
 
 Point = tuple[float, float]
 Points = tuple[Point, ...]
+
+
+class MarkedPoint(Marked):
+    """A point of an envelope with a mark of its own, in place of the envelope's."""
+
+    t_s: float
+    u_pu: float
+
+
+def _form(value: Any) -> str:
+    return A_TABLE if isinstance(value, (dict, MarkedPoint)) else A_LIST
+
+
+AnyPoint = Annotated[Annotated[Point, Tag(A_LIST)] | Annotated[MarkedPoint, Tag(A_TABLE)], Discriminator(_form)]
+AnyPoints = tuple[AnyPoint, ...]
+
+
+def _plain(points: "AnyPoints") -> Points:
+    return tuple((point.t_s, point.u_pu) if isinstance(point, MarkedPoint) else point for point in points)
+
 
 LARGEST_LEVEL_PU = 2.0
 
@@ -46,14 +68,15 @@ def _columns(points: Points) -> "tuple[NDArray[np.float64], NDArray[np.float64]]
     return table[:, 0], table[:, 1]
 
 
-def _envelope_points(points: Points) -> Points:
+def _envelope_points(marked: AnyPoints) -> AnyPoints:
+    points = _plain(marked)
     if points[0][0] != 0:
         raise ValueError(f"the first point must be at 0 s, the start of the sag, not at {points[0][0]:g} s")
     for (earlier, _), (later, _) in pairwise(points):
         if later < earlier:
             raise ValueError(f"times must not decrease: {earlier:g} s is followed by {later:g} s")
     _levels_in_range(points)
-    return points
+    return marked
 
 
 def _curve_points(points: Points) -> Points:
@@ -70,7 +93,7 @@ def _levels_in_range(points: Points) -> None:
             raise ValueError(f"levels must lie between 0 and {LARGEST_LEVEL_PU:g} pu, not {level:g}")
 
 
-class Envelope(Marked):
+class Envelope(MarkedTable):
     """Voltage over time since the start of a disturbance, up to which an inverter must stay connected.
 
     At and above it during a sag; as ``envelope_over_voltage``, at and below it during a swell. ``linear`` joins the
@@ -81,7 +104,27 @@ class Envelope(Marked):
     clause: str = ""
     voltage_quantity: VoltageQuantity
     interpolation: Literal["linear", "step"]
-    points: Annotated[Points, AfterValidator(_envelope_points)] = Field(min_length=1, description="[t_s, u_pu] each")
+    points_as_written: Annotated[AnyPoints, AfterValidator(_envelope_points)] = Field(
+        alias="points",
+        min_length=1,
+        description="[t_s, u_pu] each; a point with a mark of its own is a table of t_s, u_pu, confidence and source",
+    )
+
+    @cached_property
+    def points(self) -> Points:
+        """The points (s, pu), whatever their marks."""
+        return _plain(self.points_as_written)
+
+    @property
+    def marked_rows(self) -> AnyPoints:
+        """What may carry a mark of its own."""
+        return self.points_as_written
+
+    def mark_at(self, t_s: float) -> Mark:
+        """The weaker mark of the two points that a time lies between (s), of one of them where it lies on it."""
+        last = max((k for k, (t, _) in enumerate(self.points) if t <= t_s), default=0)
+        beside = self.points_as_written[last : last + (1 if self.points[last][0] == t_s else 2)]
+        return max(map(self.mark_of, beside), key=lambda mark: CONFIDENCES.index(mark.confidence))
 
     def voltage_at(self, t_s: "ArrayLike") -> "NDArray[np.float64]":
         """Level of the envelope (pu) at times since the start of the sag (s); shape of ``t_s``."""

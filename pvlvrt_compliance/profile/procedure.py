@@ -21,6 +21,9 @@ def _duration(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
     return handler(value)
 
 
+Expect = Literal["ride_through", "may_trip", "must_trip"]
+"""What a row of a test table demands: ride through all of it, or let go when the limits allow it, or let go in time."""
+
 Duration = Annotated[float | Literal["envelope"], WrapValidator(_duration)]
 
 
@@ -123,6 +126,11 @@ class TestRow(Marked):
     after_s: float | None = Field(default=None, gt=0, description="in place of the procedure's")
     checks: tuple[str, ...] | None = Field(default=None, min_length=1, description="kinds judged; none: all")
     long: bool = Field(default=False, description="runs on request only (--include-long)")
+    expect: Expect = Field(
+        default="ride_through",
+        description="ride_through: all of it; may_trip: as long as its voltage demands; must_trip: also open by_s",
+    )
+    by_s: float | None = Field(default=None, gt=0, description="from the start, for must_trip")
 
     @model_validator(mode="after")
     def _lasts(self) -> Self:
@@ -130,6 +138,8 @@ class TestRow(Marked):
             raise ValueError(f"duration_s: {'missing' if self.steps is None else 'steps last as long as they say'}")
         if self.steps is not None and self.sag.depth > 0:
             raise ValueError("steps: a test has a sag or steps, not both")
+        if (self.by_s is None) == (self.expect == "must_trip"):
+            raise ValueError(f"by_s: {'missing' if self.by_s is None else 'goes with expect = must_trip only'}")
         return self
 
 
@@ -147,6 +157,8 @@ class TestCase(Frozen):
     k_factor: float | None = None
     checks: tuple[str, ...] | None = None
     long: bool = False
+    expect: Expect | None = Field(default=None, description="of a row; none: a sag of the user's own")
+    by_s: float | None = None
 
     def judges(self, kind: str) -> bool:
         """Whether the test is judged by a kind of requirement."""

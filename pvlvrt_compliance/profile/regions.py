@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from pvlvrt_compliance.data.marks import Frozen, Marked
+from pvlvrt_compliance.data.marks import Fraction, Frozen, MarkedRow, MarkedTable, NotNegative
 from pvlvrt_compliance.data.problems import A_NUMBER, A_TABLE
 from pvlvrt_compliance.profile.curves import Side, VoltageQuantity
 
@@ -41,7 +41,7 @@ def _form(value: Any) -> str:
 Time = Annotated[Annotated[float, Tag(A_NUMBER)] | Annotated[LinearTime, Tag(A_TABLE)], Discriminator(_form)]
 
 
-class Region(Frozen):
+class Region(MarkedRow):
     """Voltages from the first level (included) up to the second, and what the inverter does there."""
 
     voltage_pu: tuple[float, float]
@@ -73,10 +73,12 @@ class Region(Frozen):
         return FOR_EVER if self.ride_s is None else self.ride_s
 
 
-class RegionTable(Marked):
+class RegionTable(MarkedTable):
     """Regions side by side from 0 pu on, in order of voltage; above the last the inverter may let go.
 
-    Regions below the continuous one speak of ``low_quantity``, those above of ``high_quantity``.
+    Regions below the continuous one speak of ``low_quantity``, those above of ``high_quantity``. Mandatory operation
+    goes on with ``least_current_fraction`` of the current before: of the rms of the three phases (``apparent``: the
+    total apparent current), or of the phase with the most (``largest_phase``); without it, with any current.
     """
 
     clause: str = ""
@@ -85,7 +87,26 @@ class RegionTable(Marked):
     cumulative_window_s: float | None = Field(
         default=None, gt=0, description="times add up within this sliding window; none: each excursion counts alone"
     )
+    least_current_fraction: Fraction | None = Field(
+        default=None, description="of the current before the disturbance, in mandatory regions"
+    )
+    least_current_of: Literal["apparent", "largest_phase"] | None = Field(
+        default=None, description="the current that least_current_fraction is of"
+    )
+    least_current_settling_s: NotNegative | None = Field(
+        default=None, description="after each step, in place of what a one-cycle quantity settles in"
+    )
     rows: tuple[Region, ...] = Field(min_length=1)
+
+    @model_validator(mode="after")
+    def _least_current(self) -> Self:
+        if (self.least_current_fraction is None) != (self.least_current_of is None):
+            raise ValueError("least_current_fraction and least_current_of go together")
+        if self.least_current_settling_s is not None and self.least_current_fraction is None:
+            raise ValueError("least_current_settling_s: goes with least_current_fraction only")
+        if self.least_current_fraction is not None and all(row.mode != "mandatory" for row in self.rows):
+            raise ValueError("least_current_fraction: needs a mandatory region")
+        return self
 
     @model_validator(mode="after")
     def _side_by_side(self) -> Self:

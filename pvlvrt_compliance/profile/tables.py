@@ -1,21 +1,21 @@
-"""Tables of numbers under one mark: frequency bands, recovery by depth, harmonic limits."""
+"""Tables of numbers under one mark, or a mark a row: frequency bands, recovery by depth, harmonic limits."""
 
 from itertools import pairwise
 from typing import Self
 
 from pydantic import Field, model_validator
 
-from pvlvrt_compliance.data.marks import Frozen, Marked
+from pvlvrt_compliance.data.marks import MarkedRow, MarkedTable
 
 
-class FrequencyBand(Frozen):
+class FrequencyBand(MarkedRow):
     """Frequencies from the first to the second, and how long they must be ridden through."""
 
     frequency_hz: tuple[float, float]
     ride_s: float | None = Field(default=None, gt=0, description="none: for ever")
 
 
-class FrequencyBands(Marked):
+class FrequencyBands(MarkedTable):
     """Bands side by side in order of frequency."""
 
     clause: str = ""
@@ -33,7 +33,7 @@ class FrequencyBands(Marked):
         return self
 
 
-class RecoveryRow(Frozen):
+class RecoveryRow(MarkedRow):
     """Times for sags whose residual V+ lies between two levels, the first included."""
 
     residual_pu: tuple[float, float]
@@ -41,7 +41,7 @@ class RecoveryRow(Frozen):
     final_extra_s: float = Field(ge=0, description="after it, to stay within the tolerance of the final value")
 
 
-class RecoveryTable(Marked):
+class RecoveryTable(MarkedTable):
     """Recovery times by depth."""
 
     clause: str = ""
@@ -63,7 +63,7 @@ class RecoveryTable(Marked):
         return next((row for row in self.rows if row.residual_pu[0] <= residual_pu < row.residual_pu[1]), None)
 
 
-class HarmonicLimit(Frozen):
+class HarmonicLimit(MarkedRow):
     """Limit of the harmonics from one order to another, both included: odd ones, even ones or all."""
 
     orders: tuple[int, int]
@@ -76,12 +76,17 @@ class HarmonicLimit(Frozen):
         return low <= order <= high and (self.which == "all" or (order % 2 == 1) == (self.which == "odd"))
 
 
-class HarmonicLimits(Marked):
+class HarmonicLimits(MarkedTable):
     """Limits by order; the first row that covers an order counts."""
 
     clause: str = ""
     rows: tuple[HarmonicLimit, ...] = Field(min_length=1)
 
+    def row_for(self, order: int) -> HarmonicLimit | None:
+        """The row of an order, None where the table has none."""
+        return next((row for row in self.rows if row.covers(order)), None)
+
     def limit_of(self, order: int) -> float | None:
         """Limit of an order (percent), None where the table has none."""
-        return next((row.limit_percent for row in self.rows if row.covers(order)), None)
+        row = self.row_for(order)
+        return None if row is None else row.limit_percent

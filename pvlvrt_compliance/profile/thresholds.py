@@ -22,7 +22,7 @@ def _at_most(most: float) -> Callable[[Number], Number]:
 Cycles = Annotated[NotNegative, AfterValidator(_at_most(20))]
 Floor = Annotated[Positive, AfterValidator(_at_most(0.2))]
 HertzOrDegrees = Annotated[NotNegative, AfterValidator(_at_most(5))]
-Seconds = Annotated[NotNegative, AfterValidator(_at_most(0.1))]
+Seconds = Annotated[NotNegative, AfterValidator(_at_most(1))]
 
 
 def _chosen(value: float, source: str) -> Any:
@@ -38,6 +38,9 @@ class Thresholds(Frozen):
     settled_cycles: Cycles = _chosen(1.1, "a one-cycle voltage shows a step within a cycle, and a sample or two")
     voltage_floor_pu: Floor = _chosen(0.003, "below it noise of a sensor turns the angle that current is split by")
     least_sequence_pu: Floor = _chosen(0.01, "twice the error of 0.5 % that test equipment is allowed")
+    least_difference_pu: Floor = _chosen(
+        0.10, "V+ - V- without the inverter's current, below which eq (8) of the paper leaves hardly any: 0.1 S at most"
+    )
     least_source_pu: Floor = _chosen(0.05, "noise of 0.5 % a sample at 24 kHz turns it as 0.07 Hz would")
     frequency_settled_cycles: Cycles = _chosen(
         4.1,
@@ -60,6 +63,16 @@ class Thresholds(Frozen):
         0.05, "a window further than this from the frequency before the disturbance is measured at its own"
     )
     record_slack_s: Seconds = _chosen(0.01, "by how much a record may end early: a sampling step, a coarse one too")
+
+    normal_jump_deg: HertzOrDegrees = _chosen(5.0, "a quarter of the smallest jump that a code names")
+    normal_jump_s: Seconds = _chosen(0.2, "ten cycles at 50 Hz: what a jump does to a control is over by then")
+    voltage_tolerance_pu: Floor = _chosen(0.001, "rounding of a measured voltage: on a limit by less is on it")
+    no_power_pu: Floor = _chosen(
+        0.02, "of rated power: with less than this before, no share of it is judged; what cooling and control take"
+    )
+    uncertainty_current_pu: Floor = _chosen(0.005, "averaged against switched model: 0.006 pu at most, in weak grids")
+    uncertainty_power_pu: Floor = _chosen(0.005, "of rated power: averaged against switched model 1.0 kvar of 500 kVA")
+    uncertainty_instant_s: Seconds = _chosen(0.001, "of a breaker, and of where a voltage crosses a limit")
 
     @model_validator(mode="after")
     def _nominal_is_normal(self) -> Self:

@@ -8,8 +8,8 @@ from rich.table import Table
 from rich.text import Text
 
 from pvlvrt_compliance.report import format as spell
-from pvlvrt_compliance.report.verdicts import Finding, counts, findings, verdicts
-from pvlvrt_compliance.results import EXIT_STATUS, Results, Status, TestResult
+from pvlvrt_compliance.report.verdicts import Finding, findings, marginal, may_decide, on_the_run, verdicts
+from pvlvrt_compliance.results import UNSETTLED, Results, Status, TestResult, Verdict
 
 _SHORT = {
     Status.ERROR: "error",
@@ -26,9 +26,9 @@ _STYLE = {
     Status.NOT_APPLICABLE: "dim",
 }
 
-
 _MANY_TESTS = 60
-_SHORT_NAME = 16  # characters of a check's name that leave room for its clause
+_COLUMNS = 80
+_VERDICT_COLUMNS = 10  # "applicable", the longest word of a verdict
 
 
 def render(results: Results) -> RenderableType:
@@ -38,11 +38,11 @@ def render(results: Results) -> RenderableType:
     """
     summary = Text(summary_line(results), style=_STYLE[results.status])
     if len(results.tests) > _MANY_TESTS:
-        return Group(overview_table(results), Text(), *_not_passed(results), Text(), summary)
+        return Group(overview_table(results), Text(), *_not_passed(results), *_marginal(results), Text(), summary)
     parts: list[RenderableType] = [verdict_table(results), Text()]
-    found = findings(results)
-    if found:
-        parts += [_finding(item) for item in found] + [Text()]
+    said = [*map(_finding, findings(results)), *_marginal(results)]
+    if said:
+        parts += [*said, Text()]
     return Group(*parts, summary)
 
 
@@ -72,7 +72,7 @@ def _not_passed(results: Results) -> list[Text]:
     for profile, tests in _by_profile(results):
         for test in tests:
             for check in verdicts(test):
-                if EXIT_STATUS[check.status]:
+                if check.status in UNSETTLED:
                     where.setdefault((check.status, profile, check.check), []).append(test.id)
     lines = sorted(where.items(), key=lambda item: list(Status).index(item[0][0]))
     return [
@@ -89,15 +89,30 @@ def _counts(statuses: Iterable[Status]) -> list[Text]:
 def verdict_table(results: Results) -> Table:
     """Table of all verdicts; of several tests, each has a line of its own above its checks, and each profile one.
 
-    Beside long names of checks 80 columns have no room for clauses; the report has them.
+    Where 80 columns have no room for clauses they are left out; the report has them.
     """
+    whole = _table(results, with_clause=True)
+    return whole if _least_width(whole) <= _COLUMNS else _table(results, with_clause=False)
+
+
+def _least_width(table: Table) -> int:
+    """Columns of a terminal that a table needs: those that do not wrap as wide as they are, and a gap between two."""
+    widths = [
+        max(len(cell.plain) if isinstance(cell, Text) else len(str(cell)) for cell in [column.header, *column.cells])
+        if column.no_wrap
+        else column.min_width or 0
+        for column in table.columns
+    ]
+    return sum(widths) + len(widths) - 1
+
+
+def _table(results: Results, with_clause: bool) -> Table:
     several = len(results.tests) > 1
-    with_clause = all(len(check.check) <= _SHORT_NAME for test in results.tests for check in verdicts(test))
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=0)
     table.add_column("test / check" if several else "check", no_wrap=True)
     for heading in ("measured", "limit", "margin"):
         table.add_column(heading, justify="right", no_wrap=True)
-    table.add_column("verdict", no_wrap=True)
+    table.add_column("verdict", no_wrap=with_clause, min_width=None if with_clause else _VERDICT_COLUMNS)
     if with_clause:
         table.add_column("clause", overflow="fold", min_width=6)
     table.add_column("confidence", no_wrap=True)
@@ -106,34 +121,58 @@ def verdict_table(results: Results) -> Table:
             table.add_row(Text(profile, style="bold underline"))
         for test in tests:
             if several:
-                clause = (Text(test.clause),) if with_clause else ()
-                title = Text(test.id, style="bold")
-                table.add_row(title, "", "", "", _verdict(test.status), *clause, Text(test.confidence))
+                table.add_row(*_test_cells(test, with_clause))
             _add_checks(table, test, "  " if several else "", with_clause)
     return table
 
 
 def summary_line(results: Results) -> str:
-    """One line: the verdict of the run, how many tests, and how many verdicts of each kind."""
+    """One line: the verdict of the run, how many tests, how many verdicts of each kind, and how many are marginal."""
     tests = len(results.tests)
-    kinds = ", ".join(f"{count} {spell.STATUS_WORD[status]}" for status, count in counts(results).items())
     head = f"{spell.STATUS_WORD[results.status].upper()}: {tests} test{'' if tests == 1 else 's'}"
-    return f"{head}; checks: {kinds}" if kinds else head
+    kinds = ", ".join(f"{count} {spell.STATUS_WORD[status]}" for status, count in results.counts().items())
+    pieces = [f"checks: {kinds}"] if kinds else []
+    if count := len(marginal(results)):
+        pieces.append(f"{count} marginal")
+    return "; ".join([head, *pieces, *on_the_run(results)])
+
+
+def _test_cells(test: TestResult, with_clause: bool) -> list[Text]:
+    demanded = spell.label(test.expect or "") if test.expect != "ride_through" else ""
+    clause = [Text(test.clause)] if with_clause else []
+    cells = [Text(test.id, style="bold"), Text(demanded), Text(), Text(), _verdict(test.status)]
+    return [*cells, *clause, Text(test.confidence)]
 
 
 def _add_checks(table: Table, test: TestResult, indent: str, with_clause: bool) -> None:
     for check in verdicts(test):
         numbers = spell.row(check)
         # The unit once a line: at 80 columns there is no room for it three times.
-        limit, margin = (text.removesuffix(f" {check.unit}") for text in (numbers.limit, numbers.margin))
-        cells = (indent + check.check, numbers.measured, limit, margin)
+        margin = spell.bare(numbers.margin, check)
+        cells = (indent + check.check, numbers.measured, spell.limit_in_signs(check), margin)
         # Text, because a str would be read as markup and "[0.7, 0.3]" would vanish.
         clause = (Text(check.clause),) if with_clause else ()
-        table.add_row(*map(Text, cells), _verdict(check.status), *clause, Text(check.confidence))
+        verdict = _verdict(check.status, spell.verdict_in_words(check))
+        table.add_row(*map(Text, cells), verdict, *clause, Text(check.confidence))
 
 
-def _verdict(status: Status) -> Text:
-    return Text(spell.STATUS_WORD[status], style=_STYLE[status])
+def _verdict(status: Status, words: str = "") -> Text:
+    return Text(words or spell.STATUS_WORD[status], style=_STYLE[status])
+
+
+def _marginal(results: Results) -> list[Text]:
+    """How many verdicts method and measurement leave open, what may decide, and a line for each."""
+    found = marginal(results)
+    if not found:
+        return []
+    count = "1 verdict is" if len(found) == 1 else f"{len(found)} verdicts are"
+    head = "; ".join(filter(None, [f"{count} nearer to the limit than the uncertainty", may_decide(results)]))
+    return [Text.assemble(("marginal: ", "yellow"), head), *(Text(f"  {_open(*item)}") for item in found)]
+
+
+def _open(test: str, check: Verdict) -> str:
+    place = ", ".join(filter(None, [f"{check.check} in {test}", check.stretch]))
+    return f"{place}: {spell.marginal_in_words(check)}"
 
 
 def _finding(item: Finding) -> Text:

@@ -1,6 +1,7 @@
 """The figure of a test, as the plain dictionary that plotly.js draws."""
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -15,16 +16,22 @@ _HEIGHT_PX = 150.0
 _GAP_PX = 30.0
 _TOP_PX = 55.0 + ROWS * ROW_PX
 _BOTTOM_PX = 44.0
+_LEGEND_ROW_PX = 17.0
+_LEAST_PLOT_PX = 606.0  # between the margins of the narrowest figure: on A4, and on a phone, which scrolls it
+_SYMBOL_PX, _CHARACTER_PX = 45.0, 6.0  # of a legend; a title is bold
+_BOLD_PX = 7.5
 _BEFORE_S, _AFTER_S = 0.02, 0.08  # what the zoom on an instant shows
+_TAG = re.compile("<[^>]*>")
 _FONT = "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', Arial, sans-serif"
 
 
 class _Place(NamedTuple):
-    """Where a panel stands: order from the top and its share of the height, from the bottom up."""
+    """Where a panel stands: order from the top and its share of the height, from the bottom up; its legend."""
 
     order: int
     bottom: float
     top: float
+    legend: float
 
     @property
     def suffix(self) -> str:
@@ -56,7 +63,7 @@ def test_figure(
         ``{"data": [...], "layout": {...}}`` for plotly.js 3 or later, ready for JSON.
     """
     found = panels(waveforms, test, nominal, buckets)
-    plot_px = sum(panel.height for panel in found) * _HEIGHT_PX + max(len(found) - 1, 0) * _GAP_PX
+    plot_px = sum(panel.height * _HEIGHT_PX for panel in found) + sum(_gap_px(panel) for panel in found[1:])
     placed = list(zip(found, _places(found, plot_px), strict=True))
     layout = {
         **_COMMON_LAYOUT,
@@ -68,7 +75,7 @@ def test_figure(
     }
     for panel, at in placed:
         layout[f"yaxis{at.suffix}"] = _value_axis(panel, at)
-        layout[f"legend{at.suffix}"] = {**_LEGEND, "y": at.top}
+        layout[f"legend{at.suffix}"] = {**_LEGEND, "y": at.legend}
     return {"data": [trace for panel, at in placed for trace in _traces(panel, at)], "layout": layout}
 
 
@@ -109,9 +116,28 @@ _AXIS: Mapping[str, Any] = {
 def _places(found: Sequence[Panel], plot_px: float) -> Iterator[_Place]:
     top_px = plot_px
     for order, panel in enumerate(found, start=1):
+        if order > 1:
+            top_px -= _gap_px(panel)
+        legend_px = top_px + (_LEGEND_ROW_PX if order > 1 and _rows_above(panel) else 0.0)
         bottom_px = top_px - panel.height * _HEIGHT_PX
-        yield _Place(order, max(bottom_px / plot_px, 0.0), top_px / plot_px)
-        top_px = bottom_px - _GAP_PX
+        yield _Place(order, max(bottom_px / plot_px, 0.0), top_px / plot_px, legend_px / plot_px)
+        top_px = bottom_px
+
+
+def _gap_px(panel: Panel) -> float:
+    return _GAP_PX + _rows_above(panel) * _LEGEND_ROW_PX
+
+
+def _rows_above(panel: Panel) -> int:
+    """Rows that the legend takes above the title of its panel; none where it fits beside it, however narrow."""
+    names = [curve.name for curve in panel.curves] + [line.name for line in panel.lines if line.in_legend]
+    widths = [_SYMBOL_PX + _CHARACTER_PX * len(_TAG.sub("", name)) for name in names]
+    if _BOLD_PX * len(panel.title) + sum(widths) <= _LEAST_PLOT_PX:
+        return 0
+    if sum(widths) <= _LEAST_PLOT_PX:
+        return 1
+    in_a_row = max(int(_LEAST_PLOT_PX / max(widths)), 1)  # plotly sets several rows in columns of one width
+    return math.ceil(len(widths) / in_a_row)
 
 
 def _time_axis(waveforms: Waveforms, anchor: str) -> Figure:
@@ -193,6 +219,8 @@ def _limit_trace(line: Line) -> Figure:
         "x": list(line.x),
         "y": [None if math.isnan(y) else y for y in line.y],
         "line": {"color": line.colour, "width": 1.8, "dash": line.dash},
+        "legendgroup": line.group or line.name,
+        "showlegend": line.in_legend,
         "hoverinfo": "skip",
         **area,
     }

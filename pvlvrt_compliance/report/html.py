@@ -14,7 +14,7 @@ from pvlvrt_compliance.errors import PvlvrtError
 from pvlvrt_compliance.report import format as spell
 from pvlvrt_compliance.report import measurement_table
 from pvlvrt_compliance.report.provenance import provenance_groups
-from pvlvrt_compliance.report.verdicts import counts, findings, is_verified, name_of, verdicts
+from pvlvrt_compliance.report.verdicts import findings, is_verified, marginal, may_decide, name_of, on_the_run, verdicts
 from pvlvrt_compliance.resources import resource_folder
 from pvlvrt_compliance.results import Results, Status, TestResult, Verdict
 
@@ -53,7 +53,10 @@ def render(results: Results, figures: Mapping[str, Mapping[str, Any]]) -> str:
         .render(
             results=results,
             name=partial(name_of, results=results),
-            counts=counts(results),
+            counts=results.counts(),
+            marginal=marginal(results),
+            may_decide=may_decide(results),
+            on_the_run=on_the_run(results),
             findings=findings(results),
             tables=_summary_tables(results),
             statuses=list(Status),
@@ -79,6 +82,9 @@ def _environment(folder: Path) -> Environment:
         verdicts=verdicts,
         check_of=_check_of,
         row=spell.row,
+        limit_in_words=spell.limit_in_words,
+        marginal_in_words=spell.marginal_in_words,
+        stretch_unless_told=spell.stretch_unless_told,
         number=spell.number,
         label=spell.label,
         word=lambda status: spell.STATUS_WORD[Status(status)],

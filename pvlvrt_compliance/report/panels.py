@@ -35,6 +35,8 @@ _PHASE_COLOURS = {"a": "#004488", "b": "#DDAA33", "c": "#BB5566"}
 BLUE, VERMILION, PURPLE, GREY, BLACK = "#0072B2", "#C44E00", "#9A3D8F", "#767676", "#222222"
 _JUDGED_COLOURS = ("#117733", "#0072B2", "#882255")
 _VOLTAGES = (VOLTAGE_POSITIVE, VOLTAGE_NEGATIVE)
+_LIMIT_COLOURS = {CURRENT: BLACK, ACTIVE_POWER: BLUE}
+_NO_LOAD, _SAME_PU = "V<sup>+</sup> without the inverter's current", 0.005
 _DASHES = ("dash", "dot", "dashdot", "longdash")
 
 
@@ -47,7 +49,10 @@ class Curve(NamedTuple):
 
 
 class Line(NamedTuple):
-    """A limit: straight lines through points (s, unit of the panel); ``area`` shades what lies below."""
+    """A limit: straight lines through points (s, unit of the panel); ``area`` shades what lies below.
+
+    Of a ``group`` one stands in the legend for all, and shows and hides them together.
+    """
 
     name: str
     x: Sequence[float]
@@ -55,6 +60,8 @@ class Line(NamedTuple):
     dash: str = "dash"
     colour: str = BLACK
     area: bool = False
+    group: str = ""
+    in_legend: bool = True
 
 
 class Panel(NamedTuple):
@@ -99,17 +106,26 @@ def _title(judged: Sequence[str]) -> str:
 
 
 def _limits(bands: Sequence[Band], *quantities: str) -> list[Line]:
-    """Bands of what a panel shows; those of one quantity differ in their dashes."""
+    """Bands of what a panel shows, one for each stretch perhaps; what is named alike looks alike, the rest differs."""
+    here = [band for quantity in quantities for band in bands if band.quantity == quantity]
+    groups = list(dict.fromkeys(map(_group, here)))
+    seen: set[str] = set()
     lines: list[Line] = []
-    for quantity in quantities:
-        here = [band for band in bands if band.quantity == quantity]
-        lines += [_line(band, _DASHES[k % len(_DASHES)]) for k, band in enumerate(here)]
+    for band in here:
+        group = _group(band)
+        dash = _DASHES[groups.index(group) % len(_DASHES)]
+        lines.append(_line(band, dash)._replace(group=group, in_legend=group not in seen))
+        seen.add(group)
     return lines
+
+
+def _group(band: Band) -> str:
+    return f"{band.check} {band.quantity} {band.name}"
 
 
 def _line(band: Band, dash: str) -> Line:
     """A band as one line there and back, so that the legend shows its edges once; below a floor alone it is shaded."""
-    colour = BLACK if band.quantity == CURRENT else VERMILION
+    colour = _LIMIT_COLOURS.get(band.quantity, VERMILION)
     edges = [edge for edge in (band.upper, band.lower) if edge is not None]
     if len(edges) == 1:
         area = band.quantity.startswith("voltage_") and band.upper is None
@@ -160,24 +176,33 @@ def _three_phase(segment: Segment, kind: str, base: float) -> Signals:
 
 
 def _voltages(waveforms: Waveforms, frequency_hz: float, nominal: Nominal, judged: Sequence[str]) -> list[Signals]:
-    """One-cycle V+ and V- of each segment and the voltages that limits are of; none where they cannot be measured."""
+    """One-cycle V+ and V- of each segment and the voltages that limits are of; none where they cannot be measured.
+
+    Limits let an inverter go by the voltage without its current: those are of the source, where the record has it, and
+    V+ of the source is drawn where it is not that at the terminals.
+    """
+    source = "u0" if "u0_a_v" in waveforms.names else "u"
 
     def series(segment: Segment) -> Samples:
         try:
-            phasors = sequence_phasors(segment, "u", frequency_hz)
+            at_terminals, of_source = (sequence_phasors(segment, kind, frequency_hz) for kind in ("u", source))
         except MeasurementError:  # without these channels, or sampled too thinly
-            return np.full((2 + len(judged), len(segment)), np.nan)
-        of_phases: ComplexSamples = np.asarray(phases(*phasors), dtype=np.complex128) / nominal.phase_voltage_peak_v
-        sequences = np.abs([phasors.positive, phasors.negative]) / nominal.phase_voltage_peak_v
-        return np.stack([*sequences, *(voltage_amplitude(of_phases, quantity) for quantity in judged)])
+            return np.full((3 + len(judged), len(segment)), np.nan)
+        of_phases: ComplexSamples = np.asarray(phases(*of_source), dtype=np.complex128) / nominal.phase_voltage_peak_v
+        sequences = np.abs([at_terminals.positive, at_terminals.negative, of_source.positive])
+        limited = (voltage_amplitude(of_phases, quantity) for quantity in judged)
+        return np.stack([*(sequences / nominal.phase_voltage_peak_v), *limited])
 
-    named = [("V<sup>+</sup>", BLACK), ("V<sup>−</sup>", PURPLE)]
+    named = [("V<sup>+</sup>", BLACK), ("V<sup>−</sup>", PURPLE), (_NO_LOAD, GREY)]
     named += [(name.replace("_", " "), colour) for name, colour in zip(judged, cycle(_JUDGED_COLOURS), strict=False)]
+    found = one_cycle_series(waveforms, series, frequency_hz)
+    known = np.abs(np.concatenate([x[2] - x[0] for x in found]))
+    hidden = set() if (known[np.isfinite(known)] > _SAME_PU).any() else {_NO_LOAD}
     return [
-        {name: (colour, x) for (name, colour), x in zip(named, found, strict=True)}
-        if np.isfinite(found[0]).any()
+        {name: (colour, x) for (name, colour), x in zip(named, part, strict=True) if name not in hidden}
+        if np.isfinite(part[0]).any()
         else {}
-        for found in one_cycle_series(waveforms, series, frequency_hz)
+        for part in found
     ]
 
 

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import Literal, NamedTuple, get_args
 
+from pvlvrt_compliance.data.marks import weakest
 from pvlvrt_compliance.profile.curves import Envelope, Point, Points
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.regions import FOR_EVER, Mode, Region, RegionTable
@@ -107,7 +108,7 @@ def _envelopes(ride_through: RideThrough) -> Iterator[tuple[str, Envelope | None
 
 
 def _label(name: str, envelope: Envelope) -> str:
-    return f"{name} ({envelope.voltage_quantity.replace('_', ' ')}) [{envelope.confidence}]"
+    return f"{name} ({envelope.voltage_quantity.replace('_', ' ')}) [{weakest(envelope.marks)}]"
 
 
 def _bent(points: Points) -> Points:
@@ -131,7 +132,8 @@ def _areas(table: RegionTable, begin_s: float, end_s: float) -> Iterator[Area]:
     for row in table.rows:
         low, high = row.voltage_pu[0], min(row.voltage_pu[1], max(_TOP_PU, row.voltage_pu[0] + 0.1))
         t_low, t_high = (_until(row, u_pu, begin_s, end_s) for u_pu in row.voltage_pu)
-        label = f"{row.mode.replace('_', ' ')}, {row.voltage_pu[0]:g} to {row.voltage_pu[1]:g} pu [{table.confidence}]"
+        mark = table.mark_of(row).confidence
+        label = f"{row.mode.replace('_', ' ')}, {row.voltage_pu[0]:g} to {row.voltage_pu[1]:g} pu [{mark}]"
         yield Area(label, ((begin_s, low), (t_low, low), (t_high, high), (begin_s, high)), _MODES.index(row.mode))
 
 

@@ -6,7 +6,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from pvlvrt_compliance.data.marks import VERIFIED, Choice, Flag, Marked, Number, Numbers
+from pvlvrt_compliance.data.marks import VERIFIED, Choice, Flag, Marked, Number, Numbers, own_mark
+from pvlvrt_compliance.profile.curves import MarkedPoint
 from pvlvrt_compliance.profile.procedure import TestRow
 from pvlvrt_compliance.profile.profile import Profile
 
@@ -67,7 +68,7 @@ def _content(model: BaseModel) -> Iterator[str]:
     for name, field in type(model).model_fields.items():
         value = getattr(model, name)
         if name not in _OWN_LINE and value not in (None, (), {}):
-            yield from _named(name, value, field.description)
+            yield from _named(field.alias or name, value, field.description)
 
 
 def _named(name: str, value: Any, description: str | None = None) -> Iterator[str]:
@@ -90,7 +91,7 @@ def _named(name: str, value: Any, description: str | None = None) -> Iterator[st
             yield f"{words}{note}:"
             yield from _indented(line for key, part in value.items() for line in _named_in_table(key, part, unit))
         case tuple() if name == "points":
-            yield f"{words}{note}: {', '.join(f'({x:g}, {y:g})' for x, y in value)}"
+            yield f"{words}{note}: {', '.join(map(_point, value))}"
         case tuple() if value and isinstance(value[0], BaseModel):
             yield f"{words}{note}:"
             yield from _indented(_inline(row, limit=False) or "" for row in value)
@@ -111,10 +112,19 @@ def _named_in_table(key: str, value: Any, unit: str) -> Iterator[str]:
 def _inline(model: BaseModel, limit: bool = True) -> str | None:
     """A small model on one line; None when it is larger, or holds marks."""
     parts = [(name, getattr(model, name)) for name in type(model).model_fields]
-    parts = [(name, value) for name, value in parts if value not in (None, (), {})]
+    parts = [(name, value) for name, value in parts if name not in _OWN_LINE and value not in (None, (), {})]
     if limit and (len(parts) > _MOST_INLINE or any(isinstance(value, Marked) for _, value in parts)):
         return None
-    return ", ".join(f"{_words(name)[0]} {_quantity(value, _words(name)[1])}" for name, value in parts)
+    told = ", ".join(f"{_words(name)[0]} {_quantity(value, _words(name)[1])}" for name, value in parts)
+    mark = own_mark(model)
+    return told if mark is None else f"{told} {_provenance(mark)}"
+
+
+def _point(point: Any) -> str:
+    """A point of a line, with its mark where it has one of its own."""
+    if isinstance(point, MarkedPoint):
+        return f"({point.t_s:g}, {point.u_pu:g}) {_provenance(point)}"
+    return f"({point[0]:g}, {point[1]:g})"
 
 
 def _provenance(item: Marked) -> str:
@@ -149,14 +159,15 @@ def _tests(profile: Profile) -> Iterator[str]:
         yield "TESTS: none; the profile judges a sag given with --sag"
         return
     yield f"TESTS: {len(rows)} rows, {runs} runs"
-    table = [("id", "what happens", "power", "mark", "clause"), *map(_row, rows)]
-    widths = [max(len(line[k]) for line in table) for k in range(4)]
+    table = [("id", "what happens", "power", "demand", "mark", "clause"), *map(_row, rows)]
+    widths = [max(len(line[k]) for line in table) for k in range(5)]
     for line in table:
         yield _STEP + "  ".join(text.ljust(width) for text, width in zip(line, [*widths, 0], strict=True)).rstrip()
 
 
-def _row(row: TestRow) -> tuple[str, str, str, str, str]:
-    return row.id, row.title or _what_happens(row), ",".join(row.powers), row.confidence, row.clause
+def _row(row: TestRow) -> tuple[str, str, str, str, str, str]:
+    demand = row.expect.replace("_", " ") + ("" if row.by_s is None else f" by {row.by_s:g} s")
+    return row.id, row.title or _what_happens(row), ",".join(row.powers), demand, row.confidence, row.clause
 
 
 def _what_happens(row: TestRow) -> str:

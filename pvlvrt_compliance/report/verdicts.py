@@ -3,7 +3,10 @@
 from typing import NamedTuple
 
 from pvlvrt_compliance.data.marks import VERIFIED
+from pvlvrt_compliance.report.format import STATUS_WORD
 from pvlvrt_compliance.results import Results, Status, TestResult, Verdict
+
+NOTHING_JUDGED = "nothing was judged: no requirement passed or failed"
 
 
 class Finding(NamedTuple):
@@ -43,10 +46,35 @@ def _by_reason(test: TestResult) -> dict[tuple[Status, str], list[str]]:
     return grouped
 
 
-def counts(results: Results) -> dict[Status, int]:
-    """Verdicts by status, those that occur, worst first."""
-    found = [check.status for test in results.tests for check in verdicts(test)]
-    return {status: found.count(status) for status in Status if status in found}
+class Marginal(NamedTuple):
+    """A verdict that method and measurement leave open, and the test that it is of."""
+
+    test: str
+    check: Verdict
+
+
+def marginal(results: Results) -> list[Marginal]:
+    """Verdicts nearer to their limit than they are sure of, in order."""
+    return [
+        Marginal(name_of(test, results), check)
+        for test in results.tests
+        for check in verdicts(test)
+        if check.is_marginal
+    ]
+
+
+def may_decide(results: Results) -> str:
+    """What may settle a marginal verdict, in words; nothing where that has been run already."""
+    simulation = results.provenance.get("parameters", {}).get("simulation", {})
+    return "" if simulation.get("fidelity") == "switched" else "--fidelity switched may decide"
+
+
+def on_the_run(results: Results) -> list[str]:
+    """What is to be said of the run as a whole besides its verdict, in short pieces."""
+    pieces = [NOTHING_JUDGED] if results.nothing_judged else []
+    if results.counts_as is not results.status:
+        pieces.append(f"counts as {STATUS_WORD[results.counts_as]} (--allow-unjudged)")
+    return pieces
 
 
 def is_verified(confidence: str) -> bool:

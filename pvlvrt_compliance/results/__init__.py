@@ -2,24 +2,29 @@
 
 from pvlvrt_compliance.results.band import Band
 from pvlvrt_compliance.results.results import (
-    EXIT_STATUS,
     SCHEMA_VERSION,
     ProfileSummary,
+    Rating,
     Results,
     TestResult,
     conclude,
+    exit_status,
 )
-from pvlvrt_compliance.results.verdict import Status, Verdict, worst
+from pvlvrt_compliance.results.verdict import JUDGED, UNSETTLED, Bound, Status, Verdict, worst
 
 __all__ = [
-    "EXIT_STATUS",
+    "JUDGED",
     "SCHEMA_VERSION",
+    "UNSETTLED",
     "Band",
+    "Bound",
     "ProfileSummary",
+    "Rating",
     "Results",
     "Status",
     "TestResult",
     "Verdict",
     "conclude",
+    "exit_status",
     "worst",
 ]

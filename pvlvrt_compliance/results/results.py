@@ -10,16 +10,25 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 from pvlvrt_compliance.disturbance.model import Disturbance
 from pvlvrt_compliance.measure.quantities import MeasuredWindows
 from pvlvrt_compliance.results.band import Band
-from pvlvrt_compliance.results.verdict import Status, Verdict, worst
+from pvlvrt_compliance.results.verdict import JUDGED, Status, Verdict, worst
 
 SCHEMA_VERSION = 1
 
-_NOT_FOUND = ("created", "command")  # of the provenance: when and how a run was asked for, not what it is or found
+# When and how a run was asked for, not what it is or found.
+_NOT_FOUND: dict[str, Any] = {"allow_unjudged": True, "provenance": {"created", "command"}}
 
 
 class _Frozen(BaseModel):
     # Whoever reads a result of a later version goes by the keys that he knows.
     model_config = ConfigDict(frozen=True, extra="ignore")
+
+
+class Rating(_Frozen):
+    """Base of the per-unit values of a test."""
+
+    apparent_power_kva: FiniteFloat
+    phase_voltage_v: FiniteFloat = Field(description="rms, phase to neutral")
+    frequency_hz: FiniteFloat
 
 
 class TestResult(_Frozen):
@@ -32,6 +41,14 @@ class TestResult(_Frozen):
     title: str = ""
     scenario: dict[str, Any] = Field(default_factory=dict)
     disturbance: Disturbance | None = Field(default=None, description="what the grid did")
+    expect: str | None = Field(
+        default=None,
+        description="what a row demands: ride_through, may_trip or must_trip; none: a sag of the user's own",
+    )
+    by_s: FiniteFloat | None = Field(default=None, description="from the start, when a must_trip row is to be open")
+    k_factor: FiniteFloat | None = Field(default=None, description="K of the test, in place of the profile's")
+    rating: Rating | None = Field(default=None, description="base of the per-unit values")
+    available_power_kw: FiniteFloat | None = Field(default=None, description="what the array could give before")
     status: Status
     checks: tuple[Verdict, ...] = ()
     bands: tuple[Band, ...] = Field(default=(), description="limits as a figure draws them")
@@ -46,6 +63,11 @@ class TestResult(_Frozen):
     def key(self) -> str:
         """Name that no other test of a run has: profile and id."""
         return f"{self.profile}.{self.id}" if self.profile else self.id
+
+    @property
+    def statuses(self) -> tuple[Status, ...]:
+        """Verdict of each check; a test that ended before any check still has its own."""
+        return tuple(check.status for check in self.checks) or (self.status,)
 
 
 class ProfileSummary(_Frozen):
@@ -66,38 +88,70 @@ class Results(_Frozen):
         default="",
         description="digest of what the run is and found, whenever that was; its junit.xml and report.html carry it",
     )
-    status: Status
+    status: Status = Field(description="the worst of all verdicts; not_evaluated, too, where nothing was judged")
+    allow_unjudged: bool = Field(
+        default=False, description="whether --allow-unjudged was given, for the exit status and junit.xml"
+    )
     profiles: tuple[ProfileSummary, ...] = ()
     provenance: dict[str, Any] = Field(default_factory=dict)
     tests: tuple[TestResult, ...] = ()
 
     def counts(self) -> dict[Status, int]:
-        """Number of checks by verdict."""
-        found = [check.status for test in self.tests for check in test.checks]
-        return {status: found.count(status) for status in Status}
+        """Number of verdicts by status, those that occur, worst first."""
+        found = [status for test in self.tests for status in test.statuses]
+        return {status: found.count(status) for status in Status if status in found}
+
+    @property
+    def nothing_judged(self) -> bool:
+        """Whether no requirement passed or failed."""
+        return not JUDGED & self.counts().keys()
+
+    @property
+    def counts_as(self) -> Status:
+        """The verdict that the exit status goes by: with `allow_unjudged` the worst of what could be judged."""
+        if not self.allow_unjudged or self.nothing_judged:
+            return self.status
+        return worst(status for status in self.counts() if status is not Status.NOT_EVALUATED)
 
 
 def conclude(
-    tests: Iterable[TestResult], profiles: Iterable[ProfileSummary] = (), provenance: dict[str, Any] | None = None
+    tests: Iterable[TestResult],
+    profiles: Iterable[ProfileSummary] = (),
+    provenance: dict[str, Any] | None = None,
+    *,
+    allow_unjudged: bool = False,
 ) -> Results:
-    """Gather tests into the result of a run, with its id; the file's verdict is the worst of its tests'."""
+    """Gather tests into the result of a run, with its id.
+
+    Its verdict is the worst of its tests'; where nothing applied it is `not_evaluated`, for nothing was shown.
+    """
     tests = tuple(tests)
     status = worst(test.status for test in tests)
-    results = Results(status=status, tests=tests, profiles=tuple(profiles), provenance=provenance or {})
+    results = Results(
+        status=Status.NOT_EVALUATED if status is Status.NOT_APPLICABLE else status,
+        allow_unjudged=allow_unjudged,
+        tests=tests,
+        profiles=tuple(profiles),
+        provenance=provenance or {},
+    )
     return results.model_copy(update={"run_id": _run_id(results)})
 
 
-def _run_id(results: Results) -> str:
-    """16 hexadecimal digits that are the same for the same input and the same findings."""
-    found = results.model_dump(mode="json", exclude={"run_id": True, "provenance": set(_NOT_FOUND)})
-    return hashlib.sha256(json.dumps(found, sort_keys=True).encode()).hexdigest()[:16]
+def exit_status(results: Results) -> int:
+    """Exit status of the command: 0, 1 or 3 by the verdict that the run counts as."""
+    return _EXIT_STATUS[results.counts_as]
 
 
-EXIT_STATUS = {
+_EXIT_STATUS = {
     Status.ERROR: 3,
     Status.NOT_EVALUATED: 3,
     Status.FAIL: 1,
     Status.PASS: 0,
-    Status.NOT_APPLICABLE: 0,
+    Status.NOT_APPLICABLE: 3,  # of a run: nothing was judged
 }
-"""Exit status of the command by the verdict of the run."""
+
+
+def _run_id(results: Results) -> str:
+    """16 hexadecimal digits that are the same for the same input and the same findings."""
+    found = results.model_dump(mode="json", exclude={"run_id": True, **_NOT_FOUND})
+    return hashlib.sha256(json.dumps(found, sort_keys=True).encode()).hexdigest()[:16]

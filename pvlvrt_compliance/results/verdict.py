@@ -2,11 +2,18 @@
 
 from collections.abc import Iterable
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, FiniteFloat
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, FiniteFloat, computed_field
 
 from pvlvrt_compliance.texts import all_printable
+
+Bound = Literal["at_least", "at_most", "band"]
+"""What a limit is, so that anyone recomputes the margin.
+
+``at_least``: measured - (limit - tolerance); ``at_most``: limit + tolerance - measured; ``band``: limit + tolerance -
+|measured|.
+"""
 
 
 class Status(StrEnum):
@@ -19,6 +26,12 @@ class Status(StrEnum):
     NOT_APPLICABLE = "not_applicable"
 
 
+JUDGED = frozenset({Status.PASS, Status.FAIL})
+"""Verdicts on something that could be judged and had to be."""
+
+UNSETTLED = frozenset({Status.ERROR, Status.NOT_EVALUATED, Status.FAIL})
+"""Verdicts that somebody has to look into."""
+
 _RANK = {status: rank for rank, status in enumerate(Status)}
 
 
@@ -27,10 +40,18 @@ def worst(statuses: Iterable[Status]) -> Status:
     return min(statuses, key=_RANK.__getitem__, default=Status.NOT_APPLICABLE)
 
 
+_MARGINAL = "whether |margin| is below the uncertainty, which leaves open on which side of its limit a value is"
+
+
+def _with_marginal(schema: dict[str, Any]) -> None:
+    """What is computed stands in every file that this version writes; one of an earlier version may be without."""
+    schema["properties"]["marginal"] = {"type": "boolean", "readOnly": True, "description": _MARGINAL}
+
+
 class Verdict(BaseModel):
     """One verdict on one requirement in one test."""
 
-    model_config = ConfigDict(frozen=True, extra="ignore")
+    model_config = ConfigDict(frozen=True, extra="ignore", json_schema_extra=_with_marginal)
 
     check: str = Field(description="name of the check, for instance reactive_support")
     status: Status
@@ -38,8 +59,26 @@ class Verdict(BaseModel):
     limit: FiniteFloat | None = None
     margin: FiniteFloat | None = Field(default=None, description="distance to failing, same unit, negative when failed")
     unit: str = ""
+    bound: Bound | None = Field(default=None, description="what the limit is")
+    tolerance: FiniteFloat = Field(default=0.0, description="that the limit is widened by, same unit")
+    uncertainty: FiniteFloat | None = Field(
+        default=None, description="what method and measurement leave open, same unit; none: not known"
+    )
+    stretch: str = Field(default="", description="what of a record with several disturbances it speaks of")
     at_s: FiniteFloat | None = Field(default=None, description="the worst instant, from the start of the record")
     clause: str = ""
     confidence: str = Field(default="", description="the weakest mark of the numbers that the verdict rests on")
     # A message may name a file, whose name need not be text.
     message: Annotated[str, BeforeValidator(all_printable)] = ""
+
+    @property
+    def is_marginal(self) -> bool:
+        """Whether method and measurement leave open on which side of its limit the verdict lies."""
+        if self.margin is None or self.uncertainty is None:
+            return False
+        return self.status in JUDGED and abs(self.margin) < self.uncertainty
+
+    @computed_field(description=_MARGINAL)
+    def marginal(self) -> bool:
+        """`is_marginal`, for programs that read the file."""
+        return self.is_marginal

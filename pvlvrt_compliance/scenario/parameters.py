@@ -33,7 +33,11 @@ class SimulationParameters(_Group):
     plant_step_us: Positive = 5.1196
     control_ratio: int = Field(default=8, ge=1, le=1000, description="plant steps in a control period")
     settling_s: Annotated[FiniteFloat, Field(ge=0, le=60)] = Field(
-        default=0.5, description="unrecorded, before a record; with a controller of the user's own 1 s unless set"
+        default=0.5, description="before a record, not judged; with a controller of the user's own 1 s unless set"
+    )
+    record_settling: bool = Field(
+        default=False,
+        description="write the settling into the waveforms, too, at times below 0; what is judged stays the same",
     )
     synchronising_s: Annotated[FiniteFloat, Field(ge=0, le=60)] = Field(
         default=0.2,

@@ -19,6 +19,9 @@ from pvlvrt_compliance.vectors import Phases, phases_of, scaled, vector_of
 CONTROLLER_FAILED, OUTPUT_NOT_FINITE, OUTPUT_OUT_OF_RANGE = range(2, 5)
 """How a run ended, besides what `loop` has."""
 
+IGNORED = 5
+"""No end of a run: a call after a trip that gave no command, or was not made."""
+
 SIGNALS = (
     *("time_s", "u_a_v", "u_b_v", "u_c_v", "i_a_a", "i_b_a", "i_c_a", "v_dc_v", "i_dc_a", "i_pv_a"),
     *("m_a", "m_b", "m_c", "enabled", "connected", "irradiance_w_m2"),
@@ -28,6 +31,13 @@ SIGNALS = (
 
 The loop writes those up to ``irradiance_w_m2``; the rest stays as it is given.
 """
+
+LATEST_CALL, TRIP_SEEN, IGNORED_AT, IGNORED_STATUS = range(4)
+"""What a run tells of its progress: instants (s) of the latest call, of the first after a trip, and of the first fault
+of the controller after it, with how that would have ended the run."""
+
+PROGRESSES = 4
+"""Numbers of it."""
 
 _MESSAGE = 1  # what a controller's function returns that has something to say
 
@@ -52,6 +62,7 @@ class DoorTable(NamedTuple):
     inputs: PortTable  # from `SIGNALS`
     outputs: PortTable  # to `COMMANDS`, and further signals to record
     in_volts: bool  # whether voltages are commanded
+    after_trip: bool  # whether it is called after a trip, too: one whose process ends then is not
     signals: NDArray[np.float64]  # shape (len(SIGNALS),)
     commands: NDArray[np.float64]  # shape (len(COMMANDS) + further signals,)
 
@@ -121,6 +132,33 @@ def call(door: DoorTable) -> int:
         return CONTROLLER_FAILED
     scatter(door.outputs, door.commands)
     return fault_of(door.commands, door.in_volts)
+
+
+@kernel
+def call_or_ignore(door: DoorTable, t: float, is_tripped: bool, progress: NDArray[np.float64]) -> int:
+    """Let the controller work at an instant (s). After a trip none of its faults counts, and the first ends the calls.
+
+    Commands are out of the plant's reach then: the bridge is blocked. A controller that is still called sees that it
+    is no longer connected, and its further signals are recorded; only one that has failed is left alone.
+
+    Returns
+    -------
+    int
+        How the run goes on: `COMPLETED`; after a trip also `IGNORED`, with no command to take.
+    """
+    progress[LATEST_CALL] = t
+    if not is_tripped:
+        return call(door)
+    if math.isnan(progress[TRIP_SEEN]):
+        progress[TRIP_SEEN] = t
+    if not door.after_trip or progress[IGNORED_STATUS] == CONTROLLER_FAILED:
+        return IGNORED
+    status = call(door)
+    if status == COMPLETED:
+        return COMPLETED
+    if math.isnan(progress[IGNORED_AT]) or status == CONTROLLER_FAILED:
+        progress[IGNORED_AT], progress[IGNORED_STATUS] = t, float(status)
+    return IGNORED
 
 
 @kernel

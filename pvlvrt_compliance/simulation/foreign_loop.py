@@ -26,8 +26,11 @@ from pvlvrt_compliance.plant.plant import (
 from pvlvrt_compliance.plant.protection import NO_TRIP, RelayState
 from pvlvrt_compliance.simulation.exchange import (
     COMMANDS,
+    IGNORED,
+    LATEST_CALL,
     DoorTable,
     call,
+    call_or_ignore,
     commanded,
     hold,
     put_commands,
@@ -132,7 +135,7 @@ def synchronised_controller(
     for k in range(max(timing.held, 1)):  # who is never held is told where to begin all the same
         ahead = (timing.held - k) * T_c
         back = rotation(-tables.grid.w[0] * ahead)
-        progress[0] = t - ahead
+        progress[LATEST_CALL] = t - ahead
         then, m_then = turned_state(plant, back), turned(m, back)
         seen = Measured(u_g_ab=turned(y.u_ab, back), i_ab=then.i, v_dc=then.v_dc, i_pv=then.i_pv)
         put_signals(door.signals, k * timing.sample_time, seen, 0.0, then, m_then, now.G, 0.0)
@@ -163,7 +166,7 @@ def run_foreign(
 
     First the controller sees the steady state that the plant is in, turned back in time, and its commands do not act.
     Then it samples at the beginning of every ``ratio``-th period; its command acts as many of its own sample times
-    later as the delay lines are long, and is held in between.
+    later as the delay lines are long, and is held in between. After a trip what it commands is ignored, whatever it is.
 
     Parameters
     ----------
@@ -175,8 +178,9 @@ def run_foreign(
         Delay of the modulating signal.
     samples : array, shape (n, len(RECORDED) + further signals)
         Filled with the record, a row for every period of the plan.
-    progress : array, shape (1,)
-        Kept at the instant (s) of the latest call.
+    progress : array, shape (`exchange.PROGRESSES`,)
+        Not a number at first; kept at the instant (s) of the latest call, and at what `exchange.call_or_ignore` says of
+        a trip.
 
     Returns
     -------
@@ -200,14 +204,14 @@ def run_foreign(
         now = as_at(t, k_grid, plant_params, tables)
         y = observe(plant, m, source, t, now, tables)
         if called:
-            progress[0] = t
             seen = seen_at(calls, plant, y, hardware)
             since = (calls + timing.held) * timing.sample_time
             put_signals(door.signals, since, seen, y.u_zero, plant, m, now.G, 1.0)
-            status = call(door)
-            if status != COMPLETED:
+            status = call_or_ignore(door, t, plant.trip != NO_TRIP, progress)
+            if status == COMPLETED:
+                latest = commanded(door, seen.v_dc)
+            elif status != IGNORED:
                 return Outcome(status=status, periods=n, plant=plant)
-            latest = commanded(door, seen.v_dc)
         if not is_finite_plant(plant, latest):
             return Outcome(status=NOT_FINITE, periods=n, plant=plant)
         if n == due:

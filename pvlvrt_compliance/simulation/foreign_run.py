@@ -17,7 +17,7 @@ from pvlvrt_compliance.simulation.doors.base import Door, DoorCall, port_table, 
 from pvlvrt_compliance.simulation.electronics import delay_lines_of, hardware_of
 from pvlvrt_compliance.simulation.exchange import COMMANDS, SIGNALS, DoorTable
 from pvlvrt_compliance.simulation.foreign_loop import RECORDED, Timing, run_foreign
-from pvlvrt_compliance.simulation.loop import COMPLETED, NOT_FINITE, Outcome
+from pvlvrt_compliance.simulation.loop import COMPLETED, NOT_FINITE, tripped_at_s
 from pvlvrt_compliance.simulation.recorder import RecordingPlan, every_period
 from pvlvrt_compliance.simulation.sample_time import Rates, not_below, rates_of, with_rates
 from pvlvrt_compliance.simulation.translate import (
@@ -36,6 +36,9 @@ SETTLING_S = 1.0
 _ARMED_AFTER = 0.5  # share of the settling after which the relays trip
 _MOST_NOISE = 2**20  # samples of sensor noise, after which it begins anew
 
+IGNORED_WORDS = "ignored, as it came after a trip"
+"""How a note begins that tells of a fault which did not end the run."""
+
 _REASONS: Mapping[int, str] = {
     NOT_FINITE: "a number of the plant stopped being finite",
     exchange.OUTPUT_NOT_FINITE: "a command of the controller is not a finite number",
@@ -50,13 +53,19 @@ class ForeignRecord(NamedTuple):
     channels: tuple[str, ...]
     samples: NDArray[np.float64]
     notes: tuple[str, ...] = ()  # what the controller had to say
+    tripped_at_s: float | None = None
+
+
+def settling_s_of(parameters: Parameters) -> float:
+    """How long a controller from outside settles before a record (s)."""
+    simulation = parameters.simulation
+    return simulation.settling_s if "settling_s" in simulation.model_fields_set else SETTLING_S
 
 
 def timing_of(parameters: Parameters, rates: Rates, sample_time_s: float) -> Timing:
     """When the controller begins to see and to act, in whole sample times."""
     simulation = parameters.simulation
-    settling_s = simulation.settling_s if "settling_s" in simulation.model_fields_set else SETTLING_S
-    settling = not_below(settling_s / rates.sample_time_s)
+    settling = not_below(settling_s_of(parameters) / rates.sample_time_s)
     return Timing(
         first=-settling * rates.periods,
         armed=-math.ceil((1 - _ARMED_AFTER) * settling) * rates.periods,
@@ -72,6 +81,8 @@ def run_through(
     parameters: Parameters,
     plan: RecordingPlan,
     progress: NDArray[np.float64],
+    *,
+    after_trip: bool = True,
 ) -> ForeignRecord:
     """Open a door and run its controller through a scenario.
 
@@ -79,8 +90,10 @@ def run_through(
     ----------
     plan : RecordingPlan
         In periods of `rates_of`.
-    progress : array, shape (1,)
-        Kept at the simulated time (s).
+    progress : array, shape (`exchange.PROGRESSES`,)
+        Not a number at first; kept at the simulated time (s), and at what is ignored after a trip.
+    after_trip : bool
+        Whether the controller is called after a trip, too.
 
     Raises
     ------
@@ -101,7 +114,7 @@ def run_through(
     nominal = nominal_of(parameters, scenario)
     opened = door.open(nominal)
     try:
-        table = door_table(opened, nominal, controller.lvrt.Q_set)
+        table = door_table(opened, nominal, controller.lvrt.Q_set, after_trip=after_trip)
         samples = np.empty((sum(plan.rows), len(RECORDED) + len(opened.recorded)))
         outcome = run_foreign(
             start.plant,
@@ -117,13 +130,19 @@ def run_through(
             progress,
         )
         if outcome.status != COMPLETED:
-            raise SimulationError(_explained(outcome, period_s, table, door.message()))
+            raise SimulationError(_explained(outcome.status, outcome.periods * period_s, table, door.message()))
+        ignored = _ignored(progress, table, door.message())
     finally:
         door.close()
-    return ForeignRecord((*RECORDED, *opened.recorded), samples, tuple(opened.notes))
+    return ForeignRecord(
+        (*RECORDED, *opened.recorded),
+        samples,
+        (*opened.notes, *ignored),
+        tripped_at_s(outcome.plant, int(plan.first[-1]) * period_s),
+    )
 
 
-def door_table(opened: DoorCall, nominal: Nominal, q_set_var: float) -> DoorTable:
+def door_table(opened: DoorCall, nominal: Nominal, q_set_var: float, *, after_trip: bool = True) -> DoorTable:
     """An open door as the loop has it, for an inverter of this rating and this set-point of reactive power (var)."""
     signals = np.zeros(len(SIGNALS))
     constant = {
@@ -144,21 +163,29 @@ def door_table(opened: DoorCall, nominal: Nominal, q_set_var: float) -> DoorTabl
         inputs=port_table(opened.inputs),
         outputs=port_table(opened.outputs),
         in_volts=opened.in_volts,
+        after_trip=after_trip,
         signals=signals,
         commands=np.zeros(len(COMMANDS) + len(opened.recorded)),
     )
 
 
-def _explained(outcome: Outcome, period_s: float, table: DoorTable, said: str) -> str:
-    t = outcome.periods * period_s
-    text = f"{_REASONS[outcome.status]} at {when(t)}"
-    if outcome.status in (exchange.OUTPUT_NOT_FINITE, exchange.OUTPUT_OUT_OF_RANGE):
+def _ignored(progress: NDArray[np.float64], table: DoorTable, said: str) -> tuple[str, ...]:
+    """What would have ended the run, had it not come after a trip."""
+    status, t = progress[exchange.IGNORED_STATUS], float(progress[exchange.IGNORED_AT])
+    if math.isnan(status):
+        return ()
+    return (f"{IGNORED_WORDS}: {_explained(int(status), t, table, said)}",)
+
+
+def _explained(status: int, t: float, table: DoorTable, said: str) -> str:
+    text = f"{_REASONS[status]} at {when(t)}"
+    if status in (exchange.OUTPUT_NOT_FINITE, exchange.OUTPUT_OUT_OF_RANGE):
         begin = 3 if table.in_volts else 0
         given = zip(COMMANDS[begin : begin + 3], table.commands[begin : begin + 3].tolist(), strict=True)
         text += f": {', '.join(f'{name} = {value:g}' for name, value in given)}"
-        if outcome.status == exchange.OUTPUT_OUT_OF_RANGE:
+        if status == exchange.OUTPUT_OUT_OF_RANGE:
             text += f" (at most {exchange.LARGEST[COMMANDS[begin]]:g})"
-    elif outcome.status == exchange.CONTROLLER_FAILED:
+    elif status == exchange.CONTROLLER_FAILED:
         text += f": {said}" if said else ""
     return text
 
@@ -183,5 +210,15 @@ def _run_nothing(  # type: ignore[no-untyped-def]
     table = door_table(opened, Nominal(), 0.0)
     lines = delay_lines_of(Parameters(), start)
     run_foreign(
-        start.plant, start.m, timing, plant, tables, None, lines, table, plan, np.empty((0, len(RECORDED))), np.zeros(1)
+        start.plant,
+        start.m,
+        timing,
+        plant,
+        tables,
+        None,
+        lines,
+        table,
+        plan,
+        np.empty((0, len(RECORDED))),
+        np.zeros(exchange.PROGRESSES),
     )

@@ -2,8 +2,12 @@
 
 import hashlib
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pvlvrt_compliance.errors import SimulationError, UsageError
 from pvlvrt_compliance.scenario.parameters import Parameters
@@ -11,7 +15,7 @@ from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.doors.base import Description, Value
 from pvlvrt_compliance.simulation.doors.mapping import mapping_path, missing_commands, missing_words
 from pvlvrt_compliance.simulation.doors.worker import DescribeJob, RunJob
-from pvlvrt_compliance.simulation.foreign_run import when
+from pvlvrt_compliance.simulation.foreign_run import IGNORED_WORDS, settling_s_of, when
 from pvlvrt_compliance.simulation.isolation import RECORD, Ended, do_apart
 from pvlvrt_compliance.simulation.recorder import RecordingPlan
 from pvlvrt_compliance.simulation.sample_time import rates_of
@@ -68,19 +72,36 @@ class ForeignSimulator:
 
         def make(plan: RecordingPlan) -> Waveforms:
             in_periods = RecordingPlan(first=rates.thinning * plan.first, step=rates.thinning * plan.step)
-            job = RunJob(
+            answer, samples = self._run(job_of(in_periods), limit_s)
+            self.notes += [note for note in answer["notes"] if note not in self.notes]
+            return record_of(samples, plan, row_s, answer["channels"], tripped_at_s=answer["tripped_at_s"])
+
+        def job_of(plan: RecordingPlan) -> RunJob:
+            return RunJob(
                 *(self.spec, self._given, self._mapping),
                 scenario=scenario,
                 parameters=parameters,
-                plan=in_periods,
+                plan=plan,
                 digest=self.description.digest,
             )
-            ended, arrays = do_apart(job, limit_s, keep=[RECORD])
-            answer = _answer_of(ended)
-            self.notes += [note for note in answer["notes"] if note not in self.notes]
-            return record_of(arrays[RECORD], plan, row_s, answer["channels"])
 
-        return recorded(scenario, playback_table(scenario), row_s, make)
+        settling_s = settling_s_of(parameters) if parameters.simulation.record_settling else 0.0
+        return recorded(scenario, playback_table(scenario), row_s, make, settling=int(settling_s / row_s))
+
+    def _run(self, job: RunJob, limit_s: float) -> tuple[dict[str, Any], NDArray[np.float64]]:
+        """Answer and samples of a run. One whose process ends after a trip is run anew, its controller left alone then.
+
+        Raises
+        ------
+        SimulationError
+            When there is no answer, or it is an error.
+        """
+        ended, arrays = do_apart(job, limit_s, keep=[RECORD])
+        if ended.answer is not None or ended.tripped_s is None:
+            return _answer_of(ended), arrays[RECORD]
+        again, arrays = do_apart(replace(job, after_trip=False), limit_s, keep=[RECORD])
+        answer = _answer_of(again)
+        return {**answer, "notes": [*answer["notes"], f"{IGNORED_WORDS}: {_end_in_words(ended)}"]}, arrays[RECORD]
 
     def loose_inputs(self) -> tuple[str, ...]:
         """Inputs that are given nothing, not even by a constant of the mapping."""
@@ -144,11 +165,16 @@ def _answer_of(ended: Ended) -> dict[str, Any]:
         When there is none, or it is an error.
     """
     if ended.answer is None:
-        at = "while it was opened" if ended.progress_s is None else f"at {when(ended.progress_s)}"
-        raise SimulationError(_with_said(f"{ended.reason} {at}", ended))
+        raise SimulationError(_with_said(_end_in_words(ended), ended))
     if "error" in ended.answer:
         raise SimulationError(_with_said(ended.answer["error"], ended))
     return ended.answer
+
+
+def _end_in_words(ended: Ended) -> str:
+    """Why a process gave no answer, and when."""
+    at = "while it was opened" if ended.progress_s is None else f"at {when(ended.progress_s)}"
+    return f"{ended.reason} {at}"
 
 
 def _with_said(text: str, ended: Ended) -> str:

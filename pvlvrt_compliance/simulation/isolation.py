@@ -22,6 +22,7 @@ import numpy as np
 from pvlvrt_compliance import processes
 from pvlvrt_compliance.errors import OutputError, PvlvrtError
 from pvlvrt_compliance.processes import FORKS
+from pvlvrt_compliance.simulation.exchange import LATEST_CALL, PROGRESSES, TRIP_SEEN
 from pvlvrt_compliance.simulation.scratch import clear_abandoned, job_folder
 
 JOB, ANSWER, SAID, PROGRESS, RECORD = "job.pickle", "answer.json", "said.txt", "progress.bin", "record.npy"
@@ -37,6 +38,7 @@ class Ended(NamedTuple):
     answer: dict[str, Any] | None  # what it gave; None when the process ended without
     reason: str  # why there is no answer
     progress_s: float | None  # simulated time when it ended (s); None before the run
+    tripped_s: float | None  # simulated time when the controller first was to be called after a trip (s); None: never
     said: str  # the end of what was printed meanwhile
 
 
@@ -55,7 +57,7 @@ class Server:
         """Do a job (an object that can be pickled) in a folder that is empty, for so long (s) at most."""
         try:
             (folder / JOB).write_bytes(pickle.dumps(job))
-            (folder / PROGRESS).write_bytes(np.full(1, np.nan).tobytes())
+            (folder / PROGRESS).write_bytes(np.full(PROGRESSES, np.nan).tobytes())
             (folder / SAID).touch()
         except OSError as error:
             raise OutputError(f"{folder} cannot be written: {error.strerror or error}") from None
@@ -65,11 +67,12 @@ class Server:
             self.end()  # whatever runs in it has no reader any more
             raise
         answer = folder / ANSWER
-        progress_s = float(np.fromfile(folder / PROGRESS)[0])
+        progress = [None if np.isnan(x) else float(x) for x in np.fromfile(folder / PROGRESS)]
         return Ended(
             answer=json.loads(answer.read_text("utf-8")) if answer.is_file() else None,
             reason=reason,
-            progress_s=None if np.isnan(progress_s) else progress_s,
+            progress_s=progress[LATEST_CALL],
+            tripped_s=progress[TRIP_SEEN],
             said=_tail_of(folder / SAID),
         )
 

@@ -19,6 +19,7 @@ from pvlvrt_compliance.control.precision import controller_step_in_single
 from pvlvrt_compliance.kernel import cached_kernel, kernel
 from pvlvrt_compliance.plant.grid import source_at
 from pvlvrt_compliance.plant.plant import Observed, PlantParams, PlantState, PlantTables, advance, as_at, observe
+from pvlvrt_compliance.plant.protection import NO_TRIP
 from pvlvrt_compliance.simulation.recorder import RecordingPlan, next_row
 from pvlvrt_compliance.vectors import phases_of
 
@@ -73,10 +74,21 @@ def record(row: NDArray[np.float64], x: PlantState, y: Observed, s: ControllerSi
     row[20], row[21], row[22], row[23] = s.i_ref.real, s.i_ref.imag, s.m.real, s.m.imag
 
 
+def tripped_at_s(plant: PlantState, now_s: float) -> float | None:
+    """When a plant that is in this state now has tripped (s), None when it has not."""
+    return None if plant.trip == NO_TRIP else now_s - plant.t_trip
+
+
 @kernel
 def is_finite(x: PlantState, s: ControllerSignals) -> bool:
-    """Whether every number that the next sample depends on is one: a sum is finite only if all its terms are."""
-    return math.isfinite(x.v_dc + x.i.real + x.i.imag + x.i_pv + s.m.real + s.m.imag + s.w + s.P_ref + s.v_ref)
+    """Whether every number that the next sample depends on is one: a sum is finite only if all its terms are.
+
+    After a trip the bridge is blocked, and none depends on the controller.
+    """
+    plant = x.v_dc + x.i.real + x.i.imag + x.i_pv
+    if x.trip != NO_TRIP:
+        return math.isfinite(plant)
+    return math.isfinite(plant + s.m.real + s.m.imag + s.w + s.P_ref + s.v_ref)
 
 
 @kernel

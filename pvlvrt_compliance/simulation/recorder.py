@@ -49,6 +49,21 @@ def every_period(periods: int) -> RecordingPlan:
     return RecordingPlan(first=np.array([0, periods]), step=np.array([1]))
 
 
+def with_settling(plan: RecordingPlan, periods: int, T_reg: float) -> RecordingPlan:
+    """Plan of a record and of at most so many control periods before it, in a stretch of its own up to period 0.
+
+    Every period where that takes less than `SHORT_RECORD_S`, else `THIN_RATE_HZ`.
+    """
+    step = 1 if periods * T_reg < SHORT_RECORD_S else max(int(1 / (THIN_RATE_HZ * T_reg)), 1)
+    if periods < step:
+        return plan
+    before, step_before = np.array([-(periods // step) * step]), np.array([step])
+    return RecordingPlan(
+        first=np.concatenate([before, plan.first]).astype(np.int64),
+        step=np.concatenate([step_before, plan.step]).astype(np.int64),
+    )
+
+
 def plan_of(busy: Iterable[Busy], periods: int, T_reg: float) -> RecordingPlan:
     """Plan of a record in which something happens in some stretches of time.
 

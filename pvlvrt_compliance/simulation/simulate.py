@@ -15,8 +15,8 @@ from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import busy_stretches
 from pvlvrt_compliance.simulation.electronics import hardware_of
-from pvlvrt_compliance.simulation.loop import CHANNELS, COMPLETED, run
-from pvlvrt_compliance.simulation.recorder import Busy, RecordingPlan, every_period, plan_of
+from pvlvrt_compliance.simulation.loop import CHANNELS, COMPLETED, run, tripped_at_s
+from pvlvrt_compliance.simulation.recorder import Busy, RecordingPlan, every_period, plan_of, with_settling
 from pvlvrt_compliance.simulation.translate import (
     control_period_s,
     controller_params,
@@ -60,7 +60,9 @@ def simulate(  # type: ignore[no-untyped-def]
     def make(plan: RecordingPlan) -> Waveforms:
         return _run(scenario, parameters, tables, plan, run)
 
-    return recorded(scenario, tables.playback, control_period_s(parameters), make, thin=thin)
+    T_reg, simulation = control_period_s(parameters), parameters.simulation
+    settling = math.floor(simulation.settling_s / T_reg) if simulation.record_settling else 0
+    return recorded(scenario, tables.playback, T_reg, make, thin=thin, settling=settling)
 
 
 def recorded(
@@ -70,19 +72,22 @@ def recorded(
     make: Callable[[RecordingPlan], Waveforms],
     *,
     thin: bool = True,
+    settling: int = 0,
 ) -> Waveforms:
     """Record of a scenario that holds every period (of ``T_reg``, s) where something happens, as `simulate` says.
 
     ``make`` runs the scenario by a plan; it is called again where the inverter has tripped while the record was thin.
+    So many periods of ``settling`` are recorded before it.
     """
     periods = math.floor(scenario.end_s / T_reg) + 1
     busy = [*busy_stretches(scenario), *_played(playback)]
-    waveforms = make(plan_of(busy, periods, T_reg) if thin else every_period(periods))
+    plan = plan_of(busy, periods, T_reg) if thin else every_period(periods)
+    waveforms = make(with_settling(plan, settling, T_reg))
     opened_s = _opened_while_thin_s(waveforms)
     if opened_s is None:
         return waveforms
     del waveforms  # the second record takes its place
-    return make(plan_of([*busy, (opened_s, opened_s)], periods, T_reg))
+    return make(with_settling(plan_of([*busy, (opened_s, opened_s)], periods, T_reg), settling, T_reg))
 
 
 def _played(playback: PlaybackTable | None) -> list[Busy]:
@@ -116,20 +121,26 @@ def _run(  # type: ignore[no-untyped-def]
     outcome = run(start.plant, state, start.m, -settling, plant, tables, controller, hardware, plan, samples)
     if outcome.status != COMPLETED:
         raise SimulationError(f"a number stopped being finite at {outcome.periods * T_reg:.4f} s")
-    return record_of(samples, plan, T_reg)
+    return record_of(samples, plan, T_reg, tripped_at_s=tripped_at_s(outcome.plant, int(plan.first[-1]) * T_reg))
 
 
 def record_of(
-    samples: NDArray[np.float64], plan: RecordingPlan, T_reg: float, channels: Sequence[str] = CHANNELS
+    samples: NDArray[np.float64],
+    plan: RecordingPlan,
+    T_reg: float,
+    channels: Sequence[str] = CHANNELS,
+    *,
+    tripped_at_s: float | None = None,
 ) -> Waveforms:
-    """Rows as segments, one a stretch; columns as channels."""
+    """Rows as segments, one a stretch, those before 0 as settling; columns as channels."""
     segments = []
     row = 0
     for first, step, rows in zip(plan.first.tolist(), plan.step.tolist(), plan.rows, strict=False):
         columns = np.ascontiguousarray(samples[row : row + rows].T)
         segments.append(Segment(first * T_reg, step * T_reg, dict(zip(channels, columns, strict=True))))
         row += rows
-    return Waveforms(tuple(segments))
+    settling = tuple(segment for segment in segments if segment.t0_s < 0)
+    return Waveforms(tuple(segments[len(settling) :]), settling, tripped_at_s)
 
 
 def available_power_w(scenario: Scenario, parameters: Parameters) -> float:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -100,6 +101,15 @@ class Segment:
 class Waveforms:
     """A record: one segment, or several with steps of their own, in order of time.
 
+    Parameters
+    ----------
+    segments : tuple of Segment
+        The record.
+    settling : tuple of Segment
+        What was before it, where that was kept: to be looked at, never judged.
+    tripped_at_s : float, optional
+        When the plant tripped (s), where that is known better than from the samples: of a trip before the record.
+
     Raises
     ------
     ValueError
@@ -107,11 +117,14 @@ class Waveforms:
     """
 
     segments: tuple[Segment, ...]
+    settling: tuple[Segment, ...] = ()
+    tripped_at_s: float | None = None
 
     def __post_init__(self) -> None:
         if not self.segments:
             raise ValueError("a record needs at least one segment")
-        for before, after in zip(self.segments, self.segments[1:], strict=False):
+        parts = (*self.settling, *self.segments)
+        for before, after in pairwise(parts):
             if after.t0_s <= before.end_s:
                 raise ValueError(f"segments overlap at {after.t0_s} s")
             if list(before.channels) != list(after.channels):
@@ -119,6 +132,11 @@ class Waveforms:
 
     def __iter__(self) -> Iterator[Segment]:
         return iter(self.segments)
+
+    @property
+    def with_settling(self) -> "Waveforms":
+        """Everything that was kept, as one record."""
+        return Waveforms((*self.settling, *self.segments)) if self.settling else self
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -9,6 +9,9 @@ TRIP_CAUSES = (
 )
 """Cause of a trip by code, as `plant.protection` numbers them; a record of another kind may hold none of them."""
 
+DC_OVERVOLTAGE = 2
+"""Code of the relay of which something more can be said."""
+
 
 def in_words(code: int) -> str:
     """Name a cause; a code that this version does not know is named by its number."""

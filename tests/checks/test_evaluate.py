@@ -12,7 +12,15 @@ from pvlvrt_compliance.results import Status
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.waveforms.container import Segment, Waveforms
 
-KINDS = ["ride_through", "current_limit", "reactive_support", "dc_ripple"]
+KINDS = [
+    "ride_through",
+    "current_limit",
+    "reactive_support",
+    "active_power_support",
+    "oscillation",
+    "return_to_prefault",
+    "dc_ripple",
+]
 
 
 def test_flawless_record_passes(bench, iec):

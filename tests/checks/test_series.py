@@ -27,6 +27,7 @@ def test_mean_over_a_change_of_step(bench, demanding, late_s, status):
         depth=0.3,
         duration_s=0.8,
         profile=demanding(reactive_current=k_factor),
+        p_sag_kw=20.0,  # no bridge that blocks
         q_sag_kvar=lambda t: 500 * 0.7 * np.where(t < late_s, 0.0, 0.7),
     )
     whole = made.waveforms().segments[0]

@@ -14,7 +14,8 @@ def test_help_has_an_example_and_the_exit_statuses(command):
     words = " ".join(ended.out.split())
     assert "Example: pvlvrt-check --profile iec61400-21 --sag 90%" in words
     assert "0 all passed, 1 a check failed, 2 wrong usage or profile, 3 something could not be" in words
-    assert "simulated, evaluated or written, 130 interrupted, 143 terminated (SIGTERM)." in words
+    assert "simulated, evaluated or written, or nothing was judged, 130 interrupted," in words
+    assert "143 terminated (SIGTERM)." in words
 
 
 def test_help_fits_80_columns(command):
@@ -38,7 +39,7 @@ def test_help_fits_80_columns(command):
             "--output",
             "--csv",
         ),
-        *("--exit-zero", "--quiet", "--version"),
+        *("--allow-unjudged", "--exit-zero", "--quiet", "--version"),
     ],
 )
 def test_help_names_every_option(command, option):

@@ -85,7 +85,7 @@ def test_deepest_sags(judge, options):
     """A sag of 100 % ends with a verdict on every check, and no number that is not finite."""
     ended, reports = judge("--sag", "100%", *options)
     statuses = set(reports.verdicts[reports.test["id"]].values())
-    assert len(reports.test["checks"]) == 4
+    assert len(reports.test["checks"]) == 7
     assert statuses <= {"pass", "fail", "not_applicable"}
     assert ended.status == (1 if "fail" in statuses else 0)
     samples = _samples(reports)
@@ -141,7 +141,7 @@ def test_test_patterns(judge):
     ended, reports = judge("--test", "vd6-partial-*", "--test", "VD2-full-1")
     assert list(reports.verdicts) == ["VD2-full-1", "VD6-partial-1", "VD6-partial-2"]
     assert ended.status == 0
-    assert "PASS: 3 tests; checks: 12 pass" in ended.out
+    assert "PASS: 3 tests; checks: 21 pass" in ended.out
 
 
 def test_options_hold_for_the_tests_of_a_profile(judge):
@@ -153,7 +153,7 @@ def test_options_hold_for_the_tests_of_a_profile(judge):
 def test_quiet(judge):
     """One line, with the verdict; the reports are written all the same."""
     ended, reports = judge("--sag", "90%", "--quiet")
-    assert ended == (0, "PASS: 1 test; checks: 4 pass\n", "")
+    assert ended == (0, "PASS: 1 test; checks: 7 pass; 1 marginal\n", "")
     assert "report.html" in reports.files
 
 
@@ -231,6 +231,9 @@ def test_profile_by_path(command, reports, own_profile, tmp_path):
         "ride_through": "pass",
         "current_limit": "pass",
         "reactive_support": "pass",
+        "active_power_support": "pass",
+        "oscillation": "pass",
+        "return_to_prefault": "pass",
         "dc_ripple": "fail",
     }
 

@@ -95,6 +95,26 @@ def test_show_spells_numbers_with_units(command):
     assert "TESTS: 9 rows, 27 runs" in out
 
 
+def test_show_tells_marks_of_rows_and_what_tests_demand(command):
+    """A row's own mark stands behind it; a test that may trip is told from one that is ridden through."""
+    out = command("profiles", "show", "dk-rfg").out
+    assert "frequency 47.5 to 49 Hz, ride 1800 s [code] Energinet MTB, area values: 30 minutes down to 47.5 Hz\n" in out
+    assert "frequency 49 to 51 Hz\n" in out
+    assert re.search(r"^  3ph-0.20-60s .* full +may trip +code ", out, re.MULTILINE)
+    assert re.search(r"^  3ph-0.20 .* full,partial +ride through +code ", out, re.MULTILINE)
+    out = command("profiles", "show", "nerc-prc-029").out
+    assert "least current of: largest phase" in out
+
+
+def test_show_tells_the_mark_of_a_point(command, tmp_path):
+    """A point with a mark of its own is told with it."""
+    points = "points = [[0, 0], { t_s = 1.5, u_pu = 0.8, confidence = 'memory', source = 'a point' }]"
+    file = tmp_path / "mine.toml"
+    head = 'schema_version = 1\nid = "mine"\ntitle = "t"\ninclude = ["iec61400-21"]\n'
+    file.write_text(f"{head}[requirements.ride_through.envelope]\n{points}\n", encoding="utf-8")
+    assert "(0, 0), (1.5, 0.8) [memory] a point\n" in command("profiles", "show", str(file)).out
+
+
 @pytest.mark.parametrize("name", SHIPPED)
 def test_show_json_is_the_resolved_profile(command, name):
     """The resolved profile, read again as a profile, is the same."""
@@ -181,7 +201,7 @@ def test_check_says_what_is_not_verified(command):
     ended = command("profiles", "check", "iec61400-21")
     assert (ended.status, ended.err) == (0, "")
     head, *doubts = ended.out.splitlines()
-    assert head == f"ok: 27 tests, 4 requirements, {len(doubts)} not verified"
+    assert head == f"ok: 27 tests, 7 requirements, {len(doubts)} not verified"
     assert tuple(line.strip() for line in doubts) == load_profile("iec61400-21").unverified()
 
 

@@ -130,7 +130,7 @@ def test_verdict_that_cannot_be_shown(reports, tmp_path, quiet):
         assert _into(full, subprocess.PIPE, *MAIN, *quiet, cwd=tmp_path) == (
             3,
             "pvlvrt-check: standard output cannot be written: No space left on device;"
-            " the reports are in pvlvrt-report: PASS: 1 test; checks: 4 pass\n",
+            " the reports are in pvlvrt-report: PASS: 1 test; checks: 7 pass; 1 marginal\n",
         )
     assert reports(tmp_path / "pvlvrt-report").test["status"] == "pass"
 

@@ -21,13 +21,16 @@ def tripped(command, reports, tmp_path_factory):
 
 
 def test_a_failed_check_ends_with_1(tripped):
-    """Failed ride-through; what cannot be judged after a trip is not applicable."""
+    """Failed ride-through; the current up to the trip; what cannot be judged after it is not applicable."""
     ended, reports = tripped
     assert ended.status == 1
     assert reports.verdicts[reports.test["id"]] == {
         "ride_through": "fail",
-        "current_limit": "not_applicable",
+        "current_limit": "pass",
         "reactive_support": "not_applicable",
+        "active_power_support": "not_applicable",
+        "oscillation": "not_applicable",
+        "return_to_prefault": "not_applicable",
         "dc_ripple": "not_applicable",
     }
 
@@ -37,18 +40,21 @@ def test_the_terminal_says_so(tripped):
     ended, _ = tripped
     lines = ended.out.splitlines()
     assert " fail " in next(line for line in lines if line.startswith("ride_through"))
-    assert any(line.startswith("FAIL: 1 test; checks: 1 fail, 3 not applicable") for line in lines)
-    assert "tripped 0.00" in " ".join(ended.out.split())
+    assert any(line.startswith("FAIL: 1 test; checks: 1 fail, 1 pass, 5 not applicable") for line in lines)
+    assert "tripped at 0.30" in " ".join(ended.out.split())
 
 
 def test_junit_says_so(tripped):
-    """One failure, three skipped cases."""
+    """One failure, the others skipped."""
     _, reports = tripped
     outcomes = {case.get("name"): [child.tag for child in case] for case in reports.junit.iter("testcase")}
     assert outcomes == {
         "ride_through": ["failure"],
-        "current_limit": ["skipped"],
+        "current_limit": ["system-out"],
         "reactive_support": ["skipped"],
+        "active_power_support": ["skipped"],
+        "oscillation": ["skipped"],
+        "return_to_prefault": ["skipped"],
         "dc_ripple": ["skipped"],
     }
 
@@ -83,10 +89,10 @@ def test_a_number_that_is_not_finite(judge):
     statuses = {test["id"]: test["status"] for test in reports.json["tests"]}
     assert statuses == {"VD2-full-1": "pass", "VD2-full-2": "error", "VD3-full-1": "pass"}
     assert set(reports.verdicts["VD2-full-2"].values()) == {"error"}
-    assert len(reports.verdicts["VD2-full-2"]) == 4
-    assert "ERROR: 3 tests; checks: 4 error, 8 pass" in ended.out
+    assert len(reports.verdicts["VD2-full-2"]) == 7
+    assert "ERROR: 3 tests; checks: 7 error, 14 pass" in ended.out
     assert "a number stopped being finite at 0.0" in " ".join(ended.out.split())
-    assert reports.junit.get("errors") == "4"
+    assert reports.junit.get("errors") == "7"
     assert reports.page.get_element_by_id("verdict").get("data-status") == "error"
     assert "waveforms/VD2-full-1.dat" in reports.files
     assert "waveforms/VD2-full-2.dat" not in reports.files
@@ -98,7 +104,7 @@ def test_a_test_that_does_not_start_as_it_should(judge):
     ended, reports = judge("--sag", "90%", *options)
     assert ended.status == 3
     assert set(reports.verdicts[reports.test["id"]].values()) == {"not_evaluated"}
-    assert "NOT EVALUATED: 1 test; checks: 4 not evaluated" in ended.out
+    assert "NOT EVALUATED: 1 test; checks: 7 not evaluated" in ended.out
     assert {case.find("error").get("type") for case in reports.junit.iter("testcase")} == {"not_evaluated"}
 
 

@@ -124,7 +124,7 @@ def installed(distributions, tmp_path_factory):
 def test_main_job_from_a_wheel(installed, tmp_path):
     """The wheel alone, with what it declares as dependencies, does the main job from any folder."""
     done = _done(installed / "pvlvrt-check", "--profile", "iec61400-21", "--sag", "90%", cwd=tmp_path)
-    assert "PASS: 1 test; checks: 4 pass" in done.stdout
+    assert "PASS: 1 test; checks: 7 pass" in done.stdout
     assert done.stderr == ""
     reports = tmp_path / "pvlvrt-report"
     assert "<title>" in (reports / "report.html").read_text("utf-8")
@@ -148,7 +148,7 @@ def test_project_from_a_wheel(installed, tmp_path):
     _done(installed / "pvlvrt-check", "controllers", "new", "mine", cwd=tmp_path)
     gate = ("--controller", "controller.py:Controller", "--profile", "iec61400-21", "--sag", "50%")
     done = _done(installed / "pvlvrt-check", *gate, cwd=tmp_path / "mine")
-    assert "PASS: 1 test; checks: 4 pass" in done.stdout
+    assert "PASS: 1 test; checks: 7 pass" in done.stdout
     header = _done(installed / "pvlvrt-check", "controllers", "header", cwd=tmp_path).stdout
     assert "Model_Outputs" in header
 

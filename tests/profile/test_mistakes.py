@@ -69,6 +69,68 @@ MISTAKES = {
     "first time not zero": Mistake(ENVELOPE + "points = [[1, 0]] # <-", "envelope.points", "at 0 s"),
     "no points": Mistake(ENVELOPE + "points = [] # <-", "envelope.points", "at least 1 elements, not 0"),
     "point of one": Mistake(ENVELOPE + "points = [[0, 0],\n[1]] # <-", "envelope.points[1][1]", "missing"),
+    "point without a mark": Mistake(
+        ENVELOPE + "points = [[0, 0],\n{ t_s = 1, u_pu = 0.8, source = 's' }] # <-",
+        "envelope.points[1].confidence",
+        "missing",
+    ),
+    "key of a point": Mistake(
+        ENVELOPE + "points = [{ t_s = 0, u = 0.8, source = 's', confidence = 'code' }] # <-",
+        "envelope.points[0].u",
+        '"u_pu"',
+    ),
+    "point that is a number": Mistake(ENVELOPE + "points = [1] # <-", "envelope.points[0]", "must be a list"),
+    "marked times decrease": Mistake(
+        ENVELOPE + "points = [[0, 0], [2, 0], { t_s = 1, u_pu = 0.8, source = 's', confidence = 'code' }] # <-",
+        "envelope.points",
+        "2 s is followed by 1 s",
+    ),
+    "half a mark": Mistake(
+        REGIONS.format("1, source = 's'"), "regions.rows[0].confidence", "missing; a row with source of its own"
+    ),
+    "least current of nothing": Mistake(
+        REGIONS.format(1)
+        .replace('"s"\n', '"s"\nleast_current_of = "apparent"\n')
+        .replace(" # <-", "")
+        .replace("regions]", "regions] # <-"),
+        "requirements.ride_through.regions",
+        "least_current_fraction and least_current_of go together",
+    ),
+    "settling of no least current": Mistake(
+        REGIONS.format(1)
+        .replace(" # <-", "")
+        .replace('"s"\n', '"s"\nleast_current_settling_s = { value = 1, confidence = "chosen", source = "s" } # <-\n'),
+        "regions.least_current_settling_s",
+        "goes with least_current_fraction only",
+    ),
+    "least current of another kind": Mistake(
+        REGIONS.format(1).replace('"s"\n', '"s"\nleast_current_of = "mean" # <-\n').replace("}, # <-", "},"),
+        "regions.least_current_of",
+        "'apparent' or 'largest_phase'",
+    ),
+    "least current without a region for it": Mistake(
+        REGIONS.format(1)
+        .replace("mandatory", "permissive")
+        .replace(
+            '"s"\n',
+            '"s"\nleast_current_of = "apparent"\n'
+            'least_current_fraction = { value = 0.8, confidence = "code", source = "s" } # <-\n',
+        )
+        .replace("}, # <-", "},"),
+        "regions.least_current_fraction",
+        "needs a mandatory region",
+    ),
+    "least current over 1": Mistake(
+        REGIONS.format(1)
+        .replace(
+            '"s"\n',
+            '"s"\nleast_current_of = "apparent"\n'
+            'least_current_fraction = { value = 80, confidence = "code", source = "s" } # <-\n',
+        )
+        .replace("}, # <-", "},"),
+        "regions.least_current_fraction",
+        "at most 1, not 80",
+    ),
     "level above 2 pu": Mistake(ENVELOPE + "points = [[0, 3]] # <-", "envelope.points", "between 0 and 2 pu, not 3"),
     "negative level": Mistake(ENVELOPE + "points = [[0, -0.1]] # <-", "envelope.points", "between 0 and 2 pu"),
     "unknown interpolation": Mistake(

@@ -2,7 +2,8 @@
 
 import pytest
 
-from pvlvrt_compliance.data.marks import VERIFIED, marks_in
+from pvlvrt_compliance.data.marks import VERIFIED, marks_in, weakest
+from pvlvrt_compliance.profile.curves import Side
 
 RUNS = {
     "dk-rfg": 80,
@@ -14,7 +15,7 @@ RUNS = {
     "iec61400-21": 27,
     "ieee1547-cat-ii": 35,
     "ieee1547-cat-iii": 30,
-    "nerc-prc-029": 44,
+    "nerc-prc-029": 48,
     "rey-boue-500kva": 14,
     "spain-q-curve": 0,
 }
@@ -49,6 +50,7 @@ def test_every_part_says_where_it_comes_from(shipped, name):
 UNVERIFIED = {
     "es-nts-631-lt110kv": {
         "ride_through.envelope": "inferred",
+        "ride_through.envelope_tolerance_pu": "chosen",
         "frequency_ride_through.bands": "memory",
         "reactive_current.dead_band_mode": "inferred",
         "reactive_current.tolerance_plus_pu": "inferred",
@@ -58,11 +60,19 @@ UNVERIFIED = {
         "negative_sequence_current.tolerance_minus_pu": "inferred",
         "support_dynamics.least_change_pu": "chosen",
     },
-    "nerc-prc-029": {"ride_through.envelope_tolerance_pu": "chosen"},
+    "nerc-prc-029": {
+        "ride_through.envelope_tolerance_pu": "chosen",
+        "ride_through.regions.least_current_fraction": "chosen",
+        "ride_through.regions.least_current_settling_s": "chosen",
+        "ride_through.recovery_fraction": "chosen",
+        "ride_through.recovery_time_s": "memory",
+        "phase_jump_ride_through.recovery_fraction": "chosen",
+        "phase_jump_ride_through.recovery_time_s": "memory",
+    },
     "ieee1547-cat-ii": {
+        "ride_through.envelope_tolerance_pu": "chosen",
         "ride_through.recovery_fraction": "memory",
         "ride_through.recovery_time_s": "memory",
-        "frequency_ride_through.rocof_hz_s": "memory",
         "frequency_ride_through.rocof_window_s": "memory",
         "phase_jump_ride_through.recovery_fraction": "memory",
         "phase_jump_ride_through.recovery_time_s": "memory",
@@ -81,13 +91,18 @@ UNVERIFIED = {
         "toggling.off_pu": "chosen",
         "toggling.most_activations": "chosen",
         "toggling.settling_s": "chosen",
+        "overfrequency_power.tolerance_fraction": "chosen",
         "return_to_prefault.active_fraction": "chosen",
         "return_to_prefault.reactive_fraction": "chosen",
     },
 }
+for _demanded in UNVERIFIED.values():  # a requirement of this project, which no code has
+    _demanded |= {
+        f"oscillation.{name}": "chosen" for name in ("limit_fraction", "settling_s", "array_settling_s", "least_cycles")
+    }
 UNVERIFIED["es-nts-631-ge110kv"] = UNVERIFIED["es-nts-631-lt110kv"]
 UNVERIFIED["dk-rfg-dk2"] = UNVERIFIED["dk-rfg-lt110kv"] = UNVERIFIED["dk-rfg"]
-UNVERIFIED["ieee1547-cat-iii"] = UNVERIFIED["ieee1547-cat-ii"] | {"frequency_ride_through.rocof_hz_s": None}
+UNVERIFIED["ieee1547-cat-iii"] = UNVERIFIED["ieee1547-cat-ii"]
 
 
 @pytest.mark.parametrize("name", UNVERIFIED)
@@ -99,7 +114,7 @@ def test_what_is_not_verified(shipped, name):
         for part, mark in marks_in(demand)
         if mark.confidence not in VERIFIED
     }
-    assert found == {part: mark for part, mark in UNVERIFIED[name].items() if mark}
+    assert found == UNVERIFIED[name]
 
 
 def test_the_experimental_profile_claims_nothing(shipped):
@@ -156,10 +171,82 @@ def test_two_phase_floor(shipped):
 )
 def test_labels_of_the_figures_are_on_the_envelope(shipped, name, labels):
     """What the axes of NTS 631 label lies on the line or below it by no more than the band on the residual voltage."""
-    demand = shipped[name].requirements.ride_through
+    profile = shipped[name]
     for t_s, v in labels:
-        below = float(demand.envelope.voltage_at(t_s)) - v
-        assert -0.001 < below <= demand.envelope_tolerance_pu.value + 1e-12
+        below = float(profile.envelope.voltage_at(t_s)) - v
+        assert -0.001 < below <= profile.conditions.no_load_tolerance_pu.value + 1e-12
+
+
+@pytest.mark.parametrize("name", sorted(RUNS))
+def test_tolerance_of_an_envelope_is_one_of_measurement(shipped, name):
+    """A measured voltage is rounded; the band that a test's residual voltage may lie in widens no envelope."""
+    if name != "es-po-12.3":
+        assert shipped[name].ride_through.envelope_tolerance_pu.value == 0.001
+
+
+@pytest.mark.parametrize(
+    ("name", "continuous_pu", "hour_pu", "threshold_hz", "droop"),
+    [
+        ("dk-rfg", 1.118, 1.15, 50.2, 0.05),
+        ("dk-rfg-dk2", 1.05, 1.10, 50.5, 0.04),
+        ("dk-rfg-lt110kv", 1.10, 1.10, 50.2, 0.05),
+    ],
+)
+def test_danish_values_by_area(shipped, name, continuous_pu, hour_pu, threshold_hz, droop):
+    """High voltages and LFSM-O are those of the area: a swell begins above what is ridden through for ever."""
+    profile = shipped[name]
+    high = profile.ride_through.envelope_over_voltage
+    assert profile.detection.enter_above_pu.value == profile.detection.leave_below_pu.value == continuous_pu
+    assert high.time_of(continuous_pu, Side.HIGH) is None
+    assert float(high.voltage_at(3599.0)) == hour_pu
+    assert float(high.voltage_at(3600.0)) == continuous_pu
+    demand = profile.requirements.overfrequency_power
+    assert (demand.threshold_hz.value, demand.droop_fraction.value) == (threshold_hz, droop)
+    assert {item.confidence for item in (demand.threshold_hz, demand.droop_fraction, demand.activation_s)} == {"code"}
+
+
+@pytest.mark.parametrize(
+    ("name", "low_pu", "high_pu"),
+    [
+        ("dk-rfg", 0.9, 1.118),
+        ("dk-rfg-dk2", 0.9, 1.05),
+        ("dk-rfg-lt110kv", 0.9, 1.10),
+        ("ieee1547-cat-ii", 0.88, 1.10),
+        ("ieee1547-cat-iii", 0.88, 1.10),
+        ("nerc-prc-029", 0.90, 1.05),
+    ],
+)
+def test_normal_voltage_is_that_of_continuous_operation(shipped, name, low_pu, high_pu):
+    """Where a code says which voltages go on for ever, these are normal, and were read."""
+    profile = shipped[name]
+    normal = (profile.thresholds.normal_low_pu, profile.thresholds.normal_high_pu)
+    assert [(number.value, number.confidence) for number in normal] == [(low_pu, "code"), (high_pu, "code")]
+    if (regions := profile.ride_through.regions) is not None:
+        assert regions.continuous.voltage_pu == (low_pu, high_pu)
+    else:
+        assert profile.ride_through.envelope_over_voltage.points[-1][1] == high_pu
+
+
+@pytest.mark.parametrize(
+    ("name", "least", "of"),
+    [
+        ("ieee1547-cat-ii", (0.80, "code"), "apparent"),
+        ("ieee1547-cat-iii", (0.80, "code"), "apparent"),
+        ("nerc-prc-029", (0.50, "chosen"), "largest_phase"),
+    ],
+)
+def test_least_current_of_mandatory_operation(shipped, name, least, of):
+    """How much current goes on flowing in mandatory operation, of which current, and how sure that is."""
+    table = shipped[name].ride_through.regions
+    assert (table.least_current_fraction.value, table.least_current_fraction.confidence) == least
+    assert table.least_current_of == of
+
+
+def test_marks_of_rows(shipped):
+    """The outer bands of frequency are from the bench, the inner one is from memory, and so is the table as a whole."""
+    bands = shipped["dk-rfg"].requirements.frequency_ride_through.bands
+    assert [bands.mark_of(row).confidence for row in bands.rows] == ["code", "memory", "code"]
+    assert weakest(bands.marks) == "memory"
 
 
 @pytest.mark.parametrize("name", sorted(name for name, runs in RUNS.items() if runs))

@@ -67,7 +67,7 @@ def test_step_sequences_last_as_listed(shipped, name, test_id, orders_s):
     [
         ("ieee1547-cat-ii", "cat-ii-low", "BCDE"),
         ("ieee1547-cat-ii", "cat-ii-high", "BCD"),
-        ("ieee1547-cat-iii", "cat-iii-low", "BCD"),
+        ("ieee1547-cat-iii", "cat-iii-low", "B"),
         ("ieee1547-cat-iii", "cat-iii-high", "B"),
     ],
 )
@@ -81,6 +81,40 @@ def test_steps_end_on_the_corners_of_the_regions(shipped, name, table, order):
         meeting = [r for r in low_to_high if r.ride_s is not None]
         demands = [r.ride_through_s(step.voltage_pu) for r in meeting]
         assert any(since_s == pytest.approx(demand, abs=0.0015) for demand in demands)
+
+
+@pytest.mark.parametrize(
+    ("table", "step", "range_pu"),
+    [
+        ("cat-iii-low", "A", (0.88, 1.0)),
+        ("cat-iii-low", "B", (0.0, 0.05)),
+        ("cat-iii-low", "C", (0.0, 0.5)),
+        ("cat-iii-low", "C'", (0.52, 0.70)),
+        ("cat-iii-low", "D", (0.50, 0.70)),
+        ("cat-iii-low", "E", (0.88, 1.0)),
+        ("cat-iii-high", "A", (1.0, 1.1)),
+        ("cat-iii-high", "B", (1.18, 1.20)),
+        ("cat-iii-high", "B'", (1.12, 1.20)),
+        ("cat-iii-high", "C", (1.0, 1.1)),
+    ],
+)
+def test_conditions_lie_inside_their_ranges(shipped, table, step, range_pu):
+    """Voltages of 1547.1's conditions lie in their ranges, and clear of an edge beyond which another region begins."""
+    profile = shipped["ieee1547-cat-iii"]
+    (used,) = profile.procedure.steps[table].in_order(step)
+    low, high = range_pu
+    assert low <= used.voltage_pu <= high
+    edges = {edge for region in profile.ride_through.regions.rows for edge in region.voltage_pu}
+    assert used.voltage_pu not in edges
+
+
+def test_largest_jump_of_prc_029(shipped):
+    """R1's 25 degrees are jumped ahead and back, and are no more than must be ridden through."""
+    profile = shipped["nerc-prc-029"]
+    demand = profile.requirements.phase_jump_ride_through
+    assert (demand.all_phases_deg.value, demand.all_phases_deg.confidence) == (25, "confirmed")
+    jumps = {scenario.events[0].angle_deg for scenario in scenarios_of(profile, "phase-jump-")}
+    assert jumps == {25, -25}
 
 
 @pytest.mark.parametrize("name", NORTH_AMERICA[:2])

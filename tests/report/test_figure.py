@@ -191,3 +191,51 @@ def test_a_band_of_another_check_is_drawn(record, make_test, nominal):
     line = _named(figure.test_figure(record, make_test(bands=(band,)), nominal), "my limit")
     assert line["x"] == [0.0, 1.0, 1.0, 1.0, 0.0]
     assert line["y"] == [900, 950, None, 700, 700]
+
+
+def _band(check, quantity, name, begin_s, end_s, **edges):
+    lines = {edge: (value, value) for edge, value in edges.items()}
+    return Band(check=check, quantity=quantity, name=name, t_s=(begin_s, end_s), **lines)
+
+
+def test_every_band_is_drawn_and_named_once(record, make_test, nominal):
+    """A limit for each stretch: all are drawn, alike and under one name, and those of another name look otherwise."""
+    stretches = ((0.35, 0.6), (0.65, 0.9), (0.95, 1.2))
+    given = [
+        ("current_limit", "current_pu", "limit, fundamental", {"lower": -1.02, "upper": 1.02}),
+        ("current_limit", "current_pu", "limit, first cycles", {"lower": -1.2, "upper": 1.2}),
+        ("reactive_support", "reactive_power_kvar", "limit of Q", {"lower": 150.0}),
+        ("active_power_support", "active_power_kw", "limit of P", {"lower": 300.0}),
+        ("oscillation", "active_power_kw", "swing of P", {"lower": 275.0, "upper": 325.0}),
+        ("dc_limit", "dc_voltage_v", "limit of the DC voltage", {"upper": 1100.0}),
+    ]
+    bands = tuple(_band(check, on, name, *span, **edges) for check, on, name, edges in given for span in stretches)
+    drawn = figure.test_figure(record, make_test(bands=bands), nominal)
+    looks = {}
+    for _, _, name, _ in given:
+        traces = [trace for trace in drawn["data"] if trace["name"] == name]
+        assert [(trace["x"][0], max(trace["x"])) for trace in traces] == list(stretches)
+        assert [trace["showlegend"] for trace in traces] == [True, False, False]
+        assert len({trace["legendgroup"] for trace in traces}) == 1
+        ((axis, dash, colour),) = {(t["yaxis"], t["line"]["dash"], t["line"]["color"]) for t in traces}
+        assert looks.setdefault((axis, dash, colour), name) == name
+    dashes = [(axis, dash) for axis, dash, _ in looks]
+    assert len(dashes) == len(set(dashes))  # told apart without colour, too
+
+
+@pytest.mark.parametrize("count", [0, 1, 3, 6])
+def test_a_legend_does_not_cover_a_title_or_a_panel(record, make_test, nominal, count):
+    """However many names it has, it stands above the title of its panel, and under the panel above it."""
+    names = [f"limit of the active power, number {k}" for k in range(count)]
+    bands = tuple(_band("mine", "active_power_kw", name, 0.4, 0.6, lower=100.0) for name in names)
+    layout = figure.test_figure(record, make_test(bands=bands), nominal)["layout"]
+    margins = layout["margin"]
+    plot_px = layout["height"] - margins["t"] - margins["b"]
+    above, panel = layout["yaxis3"]["domain"][0] * plot_px, layout["yaxis4"]["domain"][1] * plot_px
+    room, under = above - layout["legend4"]["y"] * plot_px, layout["legend4"]["y"] * plot_px - panel
+    assert under >= (15 if count > 1 else -0.01)  # a title is 15 px high
+    in_a_row = 606 // (45 + 6 * max(map(len, names), default=1))
+    rows = -(-(count + 2) // in_a_row) if count > 1 else 1
+    assert room >= 15 * rows - 4
+    assert layout["yaxis5"]["domain"][0] == 0
+    assert layout["yaxis"]["domain"][1] == 1

@@ -27,13 +27,13 @@ def test_a_margin_never_reads_as_zero(limit, margin):
     numbers = spell.row(check)
     assert math.copysign(1, float(numbers.margin.removesuffix(" pu"))) == math.copysign(1, margin)
     assert float(numbers.margin.removesuffix(" pu")) != 0
-    decimals = {text.removesuffix(" pu").partition(".")[2] for text in numbers}
+    decimals = {text.removesuffix(" pu").partition(".")[2] for text in numbers[:3]}
     assert len({len(text) for text in decimals}) == 1
 
 
 def test_nothing_measured_is_nothing_written():
     """Absent numbers are empty cells, not the word None."""
-    assert spell.row(Verdict(check="x", status=Status.NOT_APPLICABLE)) == ("", "", "")
+    assert spell.row(Verdict(check="x", status=Status.NOT_APPLICABLE)) == ("",) * 5
 
 
 @pytest.mark.parametrize(

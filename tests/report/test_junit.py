@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from pvlvrt_compliance.report import junit
-from pvlvrt_compliance.results import Status, TestResult, Verdict, conclude, worst
+from pvlvrt_compliance.results import Status, TestResult, Verdict, conclude, exit_status, worst
 
 SCHEMA = etree.XMLSchema(etree.parse(Path(__file__).parents[1] / "schemas" / "junit-10.xsd"))
 
@@ -30,7 +30,7 @@ def runs(draw):
         status = worst(check.status for check in found)
         length_s = draw(st.floats(0, 4000))
         tests.append(TestResult(id=name, profile=draw(texts), status=status, checks=found, duration_s=length_s))
-    return conclude(tests)
+    return conclude(tests, allow_unjudged=draw(st.booleans()))
 
 
 @given(results=runs())
@@ -75,3 +75,43 @@ def test_characters_that_xml_cannot_hold_are_replaced(given_text, read):
     test = TestResult.model_construct(**(TestResult(id="t", status=Status.FAIL).__dict__ | {"checks": (check,)}))
     root = ET.fromstring(junit.render(conclude([test])))
     assert root.find(".//failure").get("message") == read
+
+
+@pytest.mark.parametrize("allowed", [False, True])
+def test_what_could_not_be_judged(allowed):
+    """It is an error, and with the option skipped, with its reason either way; an error stays one."""
+    found = (Status.PASS, Status.NOT_EVALUATED, Status.ERROR)
+    checks = tuple(Verdict(check=status, status=status, message=f"why {status}") for status in found)
+    tests = [TestResult(id="t", status=Status.ERROR, checks=checks)]
+    root = ET.fromstring(junit.render(conclude(tests, allow_unjudged=allowed)))
+    unjudged = root.find(".//testcase[@name='not_evaluated']")[0]
+    assert unjudged.tag == ("skipped" if allowed else "error")
+    assert (unjudged.get("type"), unjudged.get("message")) == ("not_evaluated", "why not_evaluated")
+    assert root.find(".//testcase[@name='error']/error") is not None
+    assert root.get("errors") == ("1" if allowed else "2")
+    assert root.find("testsuite").get("skipped") == ("1" if allowed else "0")
+    SCHEMA.assertValid(etree.fromstring(junit.render(conclude(tests, allow_unjudged=allowed))))
+
+
+@pytest.mark.parametrize("allowed", [False, True])
+@pytest.mark.parametrize("found", [(), (Status.NOT_APPLICABLE,), (Status.NOT_EVALUATED,)], ids=str)
+def test_a_run_in_which_nothing_was_judged_is_not_green(found, allowed):
+    """Where no case is an error the run has one, so that a reader of the file and of the exit status agree."""
+    tests = [TestResult(id="t", status=x, checks=(Verdict(check="c", status=x),)) for x in found]
+    results = conclude(tests, allow_unjudged=allowed)
+    root = etree.fromstring(junit.render(results))
+    SCHEMA.assertValid(root)
+    assert root.get("errors") == "1"
+    (error,) = root.iter("error")
+    assert exit_status(results) == 3
+    of_the_run = found != (Status.NOT_EVALUATED,) or allowed
+    assert (error.get("message") == "nothing was judged: no requirement passed or failed") is of_the_run
+    assert int(root.get("tests")) == len(list(root.iter("testcase"))) == len(found) + of_the_run
+
+
+def test_what_passed_has_its_numbers(make_test, make_results):
+    """A passed case is empty but for what was measured against which limit."""
+    root = ET.fromstring(junit.render(make_results(make_test())))
+    (said,) = root.find(".//testcase[@name='reactive_support']")
+    assert said.tag == "system-out"
+    assert "measured 235.7 kvar; limit 160.7 kvar; margin +75.0 kvar" in said.text

@@ -110,3 +110,13 @@ def test_zero_is_on_the_axis(panels_of):
     for panel in panels_of(CURRENT.replace("MODE", "step")).values():
         low, high = panel.y_range
         assert low < 0 < high
+
+
+def test_lines_and_areas_are_as_sure_as_their_weakest_part(panels_of):
+    """A line bears the weakest mark of its points, an area that of its row."""
+    points = "[requirements.ride_through.envelope]\npoints = [[0, 0], { t_s = 1, u_pu = 0.8, MARK }]\n"
+    own = 'confidence = "memory-low", source = "s"'
+    regions = REGIONS.replace('mode = "may_trip" }', f'mode = "may_trip", {own} }}')
+    panel = panels_of(points.replace("MARK", own) + regions)["Ride-through"]
+    assert [line.label for line in panel.lines] == ["stay connected above (positive sequence) [memory-low]"]
+    assert [area.label.rpartition(" ")[2] for area in panel.areas] == ["[code]", "[code]", "[code]", "[memory-low]"]

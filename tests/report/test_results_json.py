@@ -30,8 +30,9 @@ def test_schema_names_every_key(make_test, make_results):
     assert schema["$schema"].endswith("2020-12/schema")
     assert set(schema["properties"]) == set(Results.model_fields)
     definitions = schema["$defs"]
-    assert set(definitions["Verdict"]["properties"]) == set(Verdict.model_fields)
+    assert set(definitions["Verdict"]["properties"]) == {*Verdict.model_fields, *Verdict.model_computed_fields}
     found = json.loads(results_json.render(make_results(make_test())))["tests"][0]
+    assert set(found["checks"][0]) == set(definitions["Verdict"]["properties"])
     assert set(found) <= set(definitions["TestResult"]["properties"])
     assert set(found["measurements"]["during"]) <= set(definitions["WindowMeasurements"]["properties"])
 

@@ -7,7 +7,7 @@ import pytest
 from rich.console import Console
 
 from pvlvrt_compliance.report import console, html, junit, results_json
-from pvlvrt_compliance.report.verdicts import counts, findings
+from pvlvrt_compliance.report.verdicts import findings
 from pvlvrt_compliance.results import Status, Verdict
 
 JUNIT_OUTCOME = {"failure": {"fail"}, "error": {"error", "not_evaluated"}, "skipped": {"not_applicable"}}
@@ -21,7 +21,7 @@ def _terminal(results, width=80):
 
 def _in_junit(results):
     case = ET.fromstring(junit.render(results)).find(".//testcase[@name='reactive_support']")
-    outcome = case[0] if len(case) else None
+    outcome = next((child for child in case if child.tag != "system-out"), None)
     if outcome is None:
         return "pass"
     assert outcome.get("type") in JUNIT_OUTCOME[outcome.tag]
@@ -71,7 +71,7 @@ def test_a_test_without_checks_still_shows_its_verdict(make_test, make_results, 
     results = make_results(make_test(), make_test("broken", checks=(), status=status))
     suites = ET.fromstring(junit.render(results)).findall("testsuite")
     assert [suite.get("errors") for suite in suites] == ["0", "1"]
-    assert counts(results)[status] == 1
+    assert results.counts()[status] == 1
     assert "broken: no check was evaluated" in " ".join(_terminal(results).split())
     assert "no check was evaluated" in html.render(results, {})
 
@@ -110,3 +110,26 @@ def test_terminal_reads_at_80_columns_without_colour(make_test, make_results, se
 def test_terminal_without_tests(make_results):
     """A run without tests prints a summary and no error."""
     assert "0 tests" in _terminal(make_results())
+
+
+def test_a_run_in_which_nothing_was_judged(make_test, make_results):
+    """Where nothing applied the run is not evaluated, and terminal and page say why."""
+    checks = (Verdict(check="x", status=Status.NOT_APPLICABLE, message="demands nothing at 0.100 pu"),)
+    results = make_results(make_test(checks=checks, status=Status.NOT_APPLICABLE))
+    assert results.status is Status.NOT_EVALUATED
+    told = "1 not applicable; nothing was judged: no requirement passed or failed"
+    assert console.summary_line(results) == f"NOT EVALUATED: 1 test; checks: {told}"
+    page = lxml.html.document_fromstring(html.render(results, {}))
+    assert page.get_element_by_id("verdict").get("data-status") == "not_evaluated"
+    assert "Nothing was judged: no requirement passed or failed." in page.find(".//header").text_content()
+
+
+def test_what_is_allowed_is_told(make_test, make_results):
+    """With --allow-unjudged the headline is what was found, and beside it stands what the run counts as."""
+    checks = (*make_test().checks, Verdict(check="x", status=Status.NOT_EVALUATED, message="no voltage"))
+    plain = make_results(make_test(checks=checks))
+    allowed = plain.model_copy(update={"allow_unjudged": True})
+    assert console.summary_line(plain) == "NOT EVALUATED: 1 test; checks: 1 not evaluated, 3 pass, 1 not applicable"
+    assert console.summary_line(allowed).endswith("1 not applicable; counts as pass (--allow-unjudged)")
+    assert "Counts as pass (--allow-unjudged)." in html.render(allowed, {})
+    assert _in_json(allowed)[1] == _in_json(plain)[1] == "not_evaluated"

@@ -1,8 +1,13 @@
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from pvlvrt_compliance.measure.power import instantaneous_power
 from pvlvrt_compliance.plant.protection import DC_OVERVOLTAGE, FREQUENCY, NO_TRIP, OVERCURRENT, UNDERVOLTAGE
+from pvlvrt_compliance.scenario.events import FrequencyRamp
+from pvlvrt_compliance.simulation.loop import is_finite
+from pvlvrt_compliance.waveforms import trip_causes
 from pvlvrt_compliance.waveforms.trip_causes import TRIP_CAUSES, in_words
 
 
@@ -74,18 +79,24 @@ def test_settings_of_the_relays_do_not_touch_a_run_within_them(simulated):
         assert np.array_equal(x, wider.samples[name]), name
 
 
+FALLING = {"depth": 0.0, "duration_s": 2.0, "events": (FrequencyRamp(t_s=0.0, rate_hz_s=-1.0, duration_s=1.0),)}
+
+
+@pytest.mark.parametrize("fidelity", ["averaged", pytest.param("switched", marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     ("settings", "fields", "cause"),
     [
         (("protection.overcurrent_pu=1.2",), {}, "over-current relay of the plant"),
         ((), {"cell_temperature_c": -15.0}, "DC over-voltage relay of the plant"),
         ((), {"duration_s": 0.5}, "under-voltage relay of the plant"),
+        (("protection.frequency_min_hz=49.5",), FALLING, "frequency relay of the plant"),
         ((), {}, None),
     ],
 )
-def test_the_record_says_what_opened_the_breaker(simulated, settings, fields, cause):
+def test_the_record_says_what_opened_the_breaker(simulated, fidelity, settings, fields, cause):
     """`trip_cause` is 0 up to the trip and the relay's code from then on, before the breaker has opened."""
-    samples = simulated(0.9, settings=settings, **fields).samples
+    settings = (*settings, f"simulation.fidelity={fidelity}")
+    samples = simulated(settings=settings, **{"depth": 0.9, **fields}).samples
     codes = samples["trip_cause"]
     assert codes[0] == 0
     assert set(np.unique(codes)) <= {0.0, codes[-1]}
@@ -99,4 +110,18 @@ def test_every_code_of_the_relays_has_words():
     codes = (NO_TRIP, OVERCURRENT, DC_OVERVOLTAGE, UNDERVOLTAGE, FREQUENCY)
     assert codes == tuple(range(len(TRIP_CAUSES)))
     assert [in_words(code).split()[0] for code in codes] == ["none", "over-current", "DC", "under-voltage", "frequency"]
+    assert DC_OVERVOLTAGE == trip_causes.DC_OVERVOLTAGE
     assert in_words(77) == "cause 77"
+
+
+@pytest.mark.parametrize(
+    ("trip", "spoiled", "goes_on"), [(0, "", True), (0, "m", False), (3, "m", True), (3, "i", False)]
+)
+def test_only_the_plant_has_to_stay_finite_after_a_trip(trip, spoiled, goes_on):
+    """A controller that loses itself ends a run before a trip; after it no number of the plant depends on it."""
+    plant = {"v_dc": 800.0, "i": 0j, "i_pv": 0.0, "trip": trip}
+    signals = {"m": 0j, "w": 314.0, "P_ref": 0.0, "v_ref": 800.0}
+    for numbers in (plant, signals):
+        numbers |= {name: complex(np.nan, 0.0) for name in numbers if name == spoiled}
+    judged = getattr(is_finite, "py_func", is_finite)(SimpleNamespace(**plant), SimpleNamespace(**signals))
+    assert judged == goes_on

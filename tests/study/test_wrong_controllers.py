@@ -6,6 +6,8 @@ from pvlvrt_compliance.results import Status
 from wrong_controllers import Wrong, wrong_run
 
 SAGS = ("three-phase 90 %", "phase c 90 %", "phase c 50 %")
+AFTER_A_TRIP = {"active_power_support", "dc_ripple", "oscillation", "reactive_support", "return_to_prefault"}
+"""What a trip within milliseconds leaves nothing of to judge; the current is limited up to it."""
 
 
 def found(result):
@@ -64,7 +66,7 @@ def test_no_current_limit_trips_in_a_deep_sag(judge):
     result = judge("three-phase 90 %", wrong_run(Wrong.NO_CURRENT_LIMIT))
     assert found(result) == {
         Status.FAIL: {"ride_through"},
-        Status.NOT_APPLICABLE: {"current_limit", "reactive_support", "dc_ripple"},
+        Status.NOT_APPLICABLE: AFTER_A_TRIP,
     }
     trip = next(check for check in result.checks if check.check == "ride_through")
     assert trip.measured < 0.05
@@ -77,14 +79,16 @@ def test_overcurrent_relay_set_too_low(judge):
     result = judge("three-phase 90 %", assignments=["protection.overcurrent_pu=1.1"])
     verdicts = found(result)
     assert verdicts[Status.FAIL] == {"ride_through"}
-    assert verdicts[Status.NOT_APPLICABLE] == {"current_limit", "reactive_support", "dc_ripple"}
-    assert all("tripped 0.00" in c.message for c in result.checks if c.status is Status.NOT_APPLICABLE)
+    assert verdicts[Status.NOT_APPLICABLE] == AFTER_A_TRIP
+    last = next(check for check in result.checks if check.check == "return_to_prefault")
+    assert "after the trip at 0.30" in last.message
 
 
 @pytest.mark.parametrize("sag", SAGS)
 def test_bridge_blocked_for_good(judge, wrong_runs, sag):
-    """A bridge that blocks and is never released fails ride-through, though the breaker stays closed."""
-    assert found(judge(sag, wrong_runs["bridge_blocked"])).get(Status.FAIL) == {"ride_through"}
+    """A bridge that blocks for good fails ride-through, though the breaker stays closed, and what is due in a sag."""
+    due = {"reactive_support"} if sag == "three-phase 90 %" else {"reactive_support", "active_power_support"}
+    assert due | {"ride_through"} <= found(judge(sag, wrong_runs["bridge_blocked"]))[Status.FAIL]
 
 
 @pytest.mark.parametrize("sag", SAGS)
@@ -104,8 +108,9 @@ def test_a_number_that_stops_being_finite(judge, wrong_runs):
 def test_sag_longer_than_the_envelope(long_sag):
     """Protection may let go once the envelope has: connected for 0.36 s where 0.309 s are demanded."""
     check = next(c for c in long_sag.checks if c.check == "ride_through")
-    assert check.status is Status.NOT_APPLICABLE
-    assert "the envelope demands 0.309 s, connected for 0.36 s" in check.message
+    assert check.status is Status.PASS
+    assert (check.measured, check.limit) == (pytest.approx(0.360, abs=1e-3), pytest.approx(0.309, abs=5e-4))
+    assert "connected for 0.360 s; the envelope demands 0.309 s" in check.message
 
 
 def test_early_trip_in_a_long_sag(long_sag_early_trip):

@@ -7,6 +7,8 @@ from pvlvrt_compliance.data.marks import Marked
 from pvlvrt_compliance.profile.requirements import Requirement
 from pvlvrt_compliance.results import Status, Verdict
 
+_AS_LONG_S = 1e-3  # what lasts as long as is demanded, but for rounding
+
 
 class Demand(NamedTuple):
     """Stay connected for a time from an instant of the record on."""
@@ -16,11 +18,23 @@ class Demand(NamedTuple):
     by: str  # what demands it, in words
     clause: str
     mark: Marked
+    uncertain_s: float = 0.0  # what is open about the time demanded
 
     @property
     def until_s(self) -> float:
         """Instant from which the inverter may let go (s)."""
         return self.since_s + self.stay_s
+
+    @property
+    def in_words(self) -> str:
+        """What demands how much, as a message says it."""
+        return f"{self.by} demands {self.stay_s:.3f} s"
+
+    def at_most(self, until_s: float) -> "Demand":
+        """The same, no longer than to an instant of the record (s)."""
+        stay_s = min(self.stay_s, until_s - self.since_s)
+        cut = self.stay_s - stay_s > _AS_LONG_S
+        return self._replace(stay_s=stay_s, by=f"{self.by}, up to clearing," if cut else self.by)
 
 
 def judged_stay(
@@ -46,4 +60,14 @@ def judged_stay(
         at_s=stopped_at_s,
         rests_on=[demand.mark],
         clause=demand.clause,
+        bound="at_least",
+        uncertainty=demand.uncertain_s,
     )
+
+
+def failed_throughout(
+    kind: str, requirement: Requirement, message: str, demand: Demand, *, stopped_at_s: float
+) -> Verdict:
+    """Verdict on an inverter that let go where connection is demanded for ever: there is no time to hold it against."""
+    found = judged_stay(kind, requirement, Status.FAIL, message, demand, stopped_at_s=stopped_at_s)
+    return found.model_copy(update={"limit": None, "margin": None, "uncertainty": None})

@@ -30,7 +30,9 @@ class Limit(NamedTuple):
 
 
 def envelope_limits(requirement: RideThrough, evidence: Evidence) -> list[Limit]:
-    """What the envelopes that apply to a record demand.
+    """What the envelopes that apply to a record demand: of the voltage without the inverter's current.
+
+    An inverter that drags its own voltage down is not let go by that.
 
     Raises
     ------
@@ -48,7 +50,7 @@ def envelope_bands(kind: str, requirement: RideThrough, evidence: Evidence) -> l
 
 
 def _band(kind: str, envelope: Envelope, side: Side, by: str, tolerance_pu: float, evidence: Evidence) -> Band:
-    voltage_pu = voltage_quantity_pu(evidence, envelope.voltage_quantity)
+    voltage_pu = voltage_quantity_pu(evidence, envelope.voltage_quantity, "no_load")
     starts_s = _starts_s(envelope, side, tolerance_pu, voltage_pu, evidence)
     ends_s = (*starts_s[1:], evidence.waveforms.end_s)
     points = [
@@ -104,13 +106,14 @@ def _no_load_sequences_pu(evidence: Evidence) -> tuple[float, float, float]:
 
 def _limit(envelope: Envelope, side: Side, by: str, tolerance_pu: float, evidence: Evidence) -> Limit:
     after_start = evidence.between(evidence.disturbance.start_s, evidence.waveforms.end_s)
-    voltage_pu = voltage_quantity_pu(evidence, envelope.voltage_quantity)
+    voltage_pu = voltage_quantity_pu(evidence, envelope.voltage_quantity, "no_load")
     require_finite(voltage_pu[after_start], NAMES[envelope.voltage_quantity], evidence.t_s[after_start])
     starts_s = _starts_s(envelope, side, tolerance_pu, voltage_pu, evidence)
     unsettled = after_each_step(evidence, settling_s(evidence), evidence.disturbance.voltage_steps_s)
 
     def demand(since_s: float, stay_s: float) -> Demand:
-        return Demand(since_s, stay_s, by, envelope.clause, envelope)
+        mark, uncertain_s = envelope.mark_at(stay_s), _uncertain_s(envelope, stay_s, evidence)
+        return Demand(since_s, stay_s, by, envelope.clause, mark, uncertain_s)
 
     def demand_at(at_s: float) -> Demand | None:
         settled = settled_pu(evidence, voltage_pu, at_s)
@@ -125,6 +128,7 @@ def _limit(envelope: Envelope, side: Side, by: str, tolerance_pu: float, evidenc
         deep = (beyond_pu > tolerance_pu) & ~unsettled[here]
         left_s = _first_excursion_s(t_s, beyond_pu, deep, on_it_pu)
         if left_s is not None:
+            left_s = _at_its_step(left_s, begin_s, envelope, side, voltage_pu, tolerance_pu, evidence)
             return Limit(demand(begin_s, left_s), demand_at)
     return Limit(None, demand_at)
 
@@ -141,6 +145,36 @@ def _starts_s(
         if step_s > starts_s[0] and sign * voltage_pu[at_step] >= back_pu:
             starts_s.append(step_s)
     return starts_s
+
+
+def _at_its_step(
+    left_s: float,
+    begin_s: float,
+    envelope: Envelope,
+    side: Side,
+    voltage_pu: Samples,
+    tolerance_pu: float,
+    evidence: Evidence,
+) -> float:
+    """When the envelope is left (s, from ``begin_s``): a one-cycle voltage shows a step that leads beyond it late."""
+    at_s = begin_s + left_s
+    steps_s = [begin_s, *evidence.disturbance.voltage_steps_s]
+    step_s = max((t for t in steps_s if at_s - settling_s(evidence) <= t <= at_s), default=None)
+    settled = None if step_s is None else settled_pu(evidence, voltage_pu, step_s)
+    if step_s is None or settled is None or step_s < begin_s:
+        return left_s
+    beyond_pu = (float(envelope.voltage_at(step_s - begin_s)) - settled) * (1 if side is Side.LOW else -1)
+    return step_s - begin_s if beyond_pu > tolerance_pu else left_s
+
+
+def _uncertain_s(envelope: Envelope, stay_s: float, evidence: Evidence) -> float:
+    """What is open about a time demanded (s): that of the breaker, and where an envelope meets a voltage."""
+    thresholds = evidence.thresholds
+    instant_s, rise_pu = thresholds.uncertainty_instant_s.value, 0.0
+    if envelope.interpolation == "linear":
+        around_s = np.array([stay_s - instant_s, stay_s + instant_s])
+        rise_pu = abs(float(np.diff(envelope.voltage_at(around_s))[0])) / (2 * instant_s)
+    return instant_s + (thresholds.voltage_tolerance_pu.value / rise_pu if rise_pu > 0 else 0.0)
 
 
 def _holds(envelope: Envelope, t_s: Samples) -> Mask:

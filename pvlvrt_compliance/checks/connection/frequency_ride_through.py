@@ -5,7 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from pvlvrt_compliance.checks.check import Check
-from pvlvrt_compliance.checks.connection.demand import Demand, judged_stay
+from pvlvrt_compliance.checks.connection.demand import Demand, failed_throughout, judged_stay
+from pvlvrt_compliance.checks.connection.letting_go import stop_of
+from pvlvrt_compliance.data.marks import Marked
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
 from pvlvrt_compliance.evidence.excursions import excursions, inside_of, time_spent_s
 from pvlvrt_compliance.evidence.frequency import (
@@ -59,42 +61,53 @@ class FrequencyRideThroughCheck(Check):
         seen = f"furthest {worst_hz:.2f} Hz at {worst_at_s:.3f} s{fastest}{held}"
         demands = [*_band_releases(requirement, evidence, frequency), *_rate_releases(requirement, evidence, rate)]
         release = min(demands, key=lambda demand: demand.until_s, default=None)
+        always = _always(requirement, evidence)
         stop = _stop(evidence)
         if stop is None:
-            always = _always(requirement, evidence)
+            end_s = max(evidence.record_end_s, always.until_s)
             return judged_stay(
-                KIND,
-                requirement,
-                Status.PASS,
-                f"connected throughout; {seen}",
-                always,
-                stopped_at_s=evidence.waveforms.end_s,
+                KIND, requirement, Status.PASS, f"connected throughout; {seen}", always, stopped_at_s=end_s
             )
         if not evidence.disturbance.is_normal(stop.at_s):
             raise NotApplicable(f"{stop.how} while the voltage was not normal, which is judged by ride_through")
-        if release is not None and stop.at_s >= release.until_s:
-            message = f"{release.by} demands {release.stay_s:.3f} s, connected for {stop.at_s - release.since_s:.2f} s"
-            return judged_stay(
-                KIND, requirement, Status.NOT_APPLICABLE, f"{message}; {seen}", release, stopped_at_s=stop.at_s
-            )
-        demand, words = _always(requirement, evidence), "every frequency and rate up to then demands connection"
-        if release is not None and release.since_s <= stop.at_s:
-            demand, words = release, f"{release.by} demands {release.stay_s:.3f} s"
-        message = (
-            f"{stop.how} at {stop.at_s:.3f} s, {stop.at_s - demand.since_s:.3f} s after {demand.since_s:.3f} s; {words}"
+        return _judge_stop(requirement, stop, release, always, evidence, seen)
+
+
+def _judge_stop(
+    requirement: FrequencyRideThrough,
+    stop: _Stop,
+    release: Demand | None,
+    always: Demand,
+    evidence: Evidence,
+    seen: str,
+) -> Verdict:
+    begun_s = release.since_s if release is not None else evidence.disturbance.start_s
+    message = f"{stop.how} at {stop.at_s:.3f} s, {stop.at_s - begun_s:.3f} s after {begun_s:.3f} s; {seen}"
+    whole = evidence.expect == "ride_through" and stop.at_s < evidence.disturbance.end_s
+    if whole:
+        return judged_stay(
+            KIND, requirement, Status.FAIL, f"{message}; {always.in_words}", always, stopped_at_s=stop.at_s
         )
-        return judged_stay(KIND, requirement, Status.FAIL, f"{message}; {seen}", demand, stopped_at_s=stop.at_s)
+    if release is None or stop.at_s < release.since_s:
+        words = f"{message}; every frequency and rate up to then demands connection"
+        return failed_throughout(KIND, requirement, words, always, stopped_at_s=stop.at_s)
+    if release.stay_s <= 0:
+        raise NotApplicable(f"{message}; {release.by} demands nothing")
+    status = Status.PASS if stop.at_s >= release.until_s else Status.FAIL
+    return judged_stay(KIND, requirement, status, f"{message}; {release.in_words}", release, stopped_at_s=stop.at_s)
 
 
 def _stop(evidence: Evidence) -> _Stop | None:
-    if evidence.disconnected_at_s is not None:
-        return _Stop(evidence.disconnected_at_s, "tripped")
+    stop = stop_of(evidence)
+    if stop is not None:
+        return _Stop(stop.at_s, f"tripped{stop.cause}")
     return None if evidence.blocked_at_s is None else _Stop(evidence.blocked_at_s, "bridge blocked")
 
 
 def _always(requirement: FrequencyRideThrough, evidence: Evidence) -> Demand:
-    start_s = evidence.disturbance.start_s
-    return Demand(start_s, evidence.waveforms.end_s - start_s, "", requirement.bands.clause, requirement.bands)
+    grid, bands = evidence.disturbance, requirement.bands
+    uncertain_s = evidence.thresholds.uncertainty_instant_s.value
+    return Demand(grid.start_s, grid.end_s - grid.start_s, "the test", bands.clause, bands, uncertain_s)
 
 
 def _band_releases(requirement: FrequencyRideThrough, evidence: Evidence, frequency: Samples) -> list[Demand]:
@@ -103,14 +116,35 @@ def _band_releases(requirement: FrequencyRideThrough, evidence: Evidence, freque
     nominal_hz = evidence.nominal.frequency_hz
     low_hz, high_hz = rows[0].frequency_hz[0], rows[-1].frequency_hz[1]
     found = [
-        _beyond(requirement, evidence, frequency, Side.LOW, low_hz, 0.0, f"below {low_hz:g} Hz the code"),
-        _beyond(requirement, evidence, frequency, Side.HIGH, high_hz, 0.0, f"above {high_hz:g} Hz the code"),
+        _beyond(
+            requirement,
+            evidence,
+            frequency,
+            Side.LOW,
+            low_hz,
+            0.0,
+            f"below {low_hz:g} Hz the code",
+            requirement.bands.mark_of(rows[0]),
+        ),
+        _beyond(
+            requirement,
+            evidence,
+            frequency,
+            Side.HIGH,
+            high_hz,
+            0.0,
+            f"above {high_hz:g} Hz the code",
+            requirement.bands.mark_of(rows[-1]),
+        ),
     ]
     for row in rows:
         if row.ride_s is not None:
             side = Side.LOW if row.frequency_hz[1] <= nominal_hz else Side.HIGH
             near_hz = row.frequency_hz[1 if side is Side.LOW else 0]
-            found.append(_beyond(requirement, evidence, frequency, side, near_hz, row.ride_s, _band_in_words(row)))
+            mark = requirement.bands.mark_of(row)
+            found.append(
+                _beyond(requirement, evidence, frequency, side, near_hz, row.ride_s, _band_in_words(row), mark)
+            )
     return [demand for demand in found if demand is not None]
 
 
@@ -126,6 +160,7 @@ def _beyond(
     edge_hz: float,
     ride_s: float,
     by: str,
+    mark: Marked,
 ) -> Demand | None:
     sign = 1 if side is Side.LOW else -1
     found = excursions(
@@ -137,7 +172,8 @@ def _beyond(
     free = np.flatnonzero(inside_of(found, evidence.t_s) & (spent_s >= ride_s))
     if not len(free):
         return None
-    return Demand(float(evidence.t_s[free[0]]) - ride_s, ride_s, by, requirement.bands.clause, requirement.bands)
+    begun_s, uncertain_s = float(evidence.t_s[free[0]]) - ride_s, evidence.half_cycle_s
+    return Demand(begun_s, ride_s, by, requirement.bands.clause, mark, uncertain_s)
 
 
 def _rate(requirement: FrequencyRideThrough, evidence: Evidence) -> Samples | None:

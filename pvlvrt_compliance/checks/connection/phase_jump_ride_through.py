@@ -6,10 +6,12 @@ from typing import NamedTuple
 import numpy as np
 
 from pvlvrt_compliance.checks.check import Check
-from pvlvrt_compliance.checks.connection.demand import Demand, judged_stay
+from pvlvrt_compliance.checks.connection.demand import Demand, failed_throughout, judged_stay
+from pvlvrt_compliance.checks.connection.letting_go import Stop, stop_of
 from pvlvrt_compliance.checks.recovery import judge_recovery
 from pvlvrt_compliance.data.marks import marks_in
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
+from pvlvrt_compliance.evidence.frequency import ends_at_another_frequency
 from pvlvrt_compliance.evidence.stretches import between_steps_s, settling_s
 from pvlvrt_compliance.measure.fourier import ComplexSamples
 from pvlvrt_compliance.profile.requirements import PhaseJumpRideThrough
@@ -63,10 +65,10 @@ class PhaseJumpRideThroughCheck(Check):
                 raise NotApplicable(
                     f"the jump at {jump.at_s:.3f} s, {jump.seen}, of {jump.in_words} is beyond {beyond}"
                 )
-        if evidence.disconnected_at_s is not None:
-            return _judge_trip(requirement, evidence, jumps, evidence.disconnected_at_s)
+        if (stop := stop_of(evidence)) is not None:
+            return _judge_trip(requirement, evidence, jumps, stop)
         largest = max(jumps, key=lambda jump: abs(jump.positive_deg))
-        return judge_recovery(
+        verdict = judge_recovery(
             KIND,
             requirement,
             evidence,
@@ -76,6 +78,9 @@ class PhaseJumpRideThroughCheck(Check):
             rests_on=[number for _, number in marks_in(requirement)],
             since=f"the last jump (largest: {largest.in_words}, {largest.seen})",
         )
+        if verdict.status is Status.FAIL and ends_at_another_frequency(evidence):
+            raise NotApplicable("connected through every jump; the frequency ends elsewhere, and the power with it")
+        return verdict
 
 
 def jump_at(evidence: Evidence, at_s: float) -> SeenJump:
@@ -128,18 +133,19 @@ def _beyond(requirement: PhaseJumpRideThrough, jump: SeenJump) -> str | None:
     return None
 
 
-def _judge_trip(
-    requirement: PhaseJumpRideThrough, evidence: Evidence, jumps: list[SeenJump], tripped_at_s: float
-) -> Verdict:
-    if tripped_at_s < jumps[0].at_s:
+def _judge_trip(requirement: PhaseJumpRideThrough, evidence: Evidence, jumps: list[SeenJump], stop: Stop) -> Verdict:
+    if stop.at_s < jumps[0].at_s:
         raise NotApplicable("tripped before the first jump")
-    if not evidence.disturbance.is_normal(tripped_at_s):
+    if not evidence.disturbance.is_normal(stop.at_s):
         raise NotApplicable("tripped while the voltage was not normal, which is judged by ride_through")
-    jump = next(jump for jump in reversed(jumps) if jump.at_s <= tripped_at_s)
-    mark = requirement.all_phases_deg
-    demand = Demand(jump.at_s, evidence.waveforms.end_s - jump.at_s, "", requirement.clause, mark)
+    grid = evidence.disturbance
+    jump = next(jump for jump in reversed(jumps) if jump.at_s <= stop.at_s)
+    mark, clause = requirement.all_phases_deg, requirement.clause
+    demand = Demand(jump.at_s, max(grid.end_s - jump.at_s, 0.0), "the test", clause, mark)
     message = (
-        f"tripped {tripped_at_s - jump.at_s:.3f} s after a jump of {jump.in_words} ({jump.seen}); the code demands"
-        " connection"
+        f"{stop.in_words}, {stop.at_s - jump.at_s:.3f} s after a jump of {jump.in_words} ({jump.seen}); the code"
+        " demands connection"
     )
-    return judged_stay(KIND, requirement, Status.FAIL, message, demand, stopped_at_s=tripped_at_s)
+    if evidence.expect == "ride_through" and stop.at_s < grid.end_s:
+        return judged_stay(KIND, requirement, Status.FAIL, message, demand, stopped_at_s=stop.at_s)
+    return failed_throughout(KIND, requirement, message, demand, stopped_at_s=stop.at_s)

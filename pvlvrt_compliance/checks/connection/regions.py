@@ -11,7 +11,7 @@ from pvlvrt_compliance.evidence.evidence import Evidence, require_finite
 from pvlvrt_compliance.evidence.excursions import excursions, inside_of, time_spent_s
 from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.evidence.stretches import settled_pu, settling_s
-from pvlvrt_compliance.evidence.voltages import NAMES, voltage_quantity_pu
+from pvlvrt_compliance.evidence.voltages import NAMES, Place, voltage_quantity_pu
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.profile.curves import LARGEST_LEVEL_PU, Side
 from pvlvrt_compliance.profile.regions import LinearTime, Region, RegionTable
@@ -33,7 +33,7 @@ class Visit(NamedTuple):
         return f"the region {low:g} to {high:g} pu ({self.region.mode.replace('_', ' ')})"
 
 
-def visits(table: RegionTable, tolerance_pu: float, evidence: Evidence) -> list[Visit]:
+def visits(table: RegionTable, tolerance_pu: float, evidence: Evidence, place: Place) -> list[Visit]:
     """What a record has of each region but the continuous one; above the last the inverter may trip.
 
     A voltage less than the tolerance beyond the edge of a region is not in it, nor is what a one-cycle voltage shows
@@ -44,7 +44,7 @@ def visits(table: RegionTable, tolerance_pu: float, evidence: Evidence) -> list[
     MeasurementError
         When a voltage is missing or not finite.
     """
-    return [visit for side in Side for visit in _visits_of(table, side, tolerance_pu, evidence)]
+    return [visit for side in Side for visit in _visits_of(table, side, tolerance_pu, evidence, place)]
 
 
 def region_limits(table: RegionTable, found: list[Visit], evidence: Evidence) -> list[Limit]:
@@ -52,9 +52,11 @@ def region_limits(table: RegionTable, found: list[Visit], evidence: Evidence) ->
     return [_limit(table, visit, evidence) for visit in found]
 
 
-def _visits_of(table: RegionTable, side: Side, tolerance_pu: float, evidence: Evidence) -> Iterator[Visit]:
+def _visits_of(
+    table: RegionTable, side: Side, tolerance_pu: float, evidence: Evidence, place: Place
+) -> Iterator[Visit]:
     quantity = table.low_quantity if side is Side.LOW else table.high_quantity
-    voltage_pu = voltage_quantity_pu(evidence, quantity)
+    voltage_pu = voltage_quantity_pu(evidence, quantity, place)
     after_start = evidence.between(evidence.disturbance.start_s, evidence.waveforms.end_s)
     require_finite(voltage_pu[after_start], NAMES[quantity], evidence.t_s[after_start])
     from_mild_to_worse = _by_distance(table, side)
@@ -87,7 +89,8 @@ def _stretches(mask: Mask, evidence: Evidence) -> tuple[Span, ...]:
 
 def _limit(table: RegionTable, visit: Visit, evidence: Evidence) -> Limit:
     def demand(since_s: float, stay_s: float) -> Demand:
-        return Demand(since_s, stay_s, visit.name, table.clause, table)
+        uncertain_s = evidence.thresholds.uncertainty_instant_s.value
+        return Demand(since_s, stay_s, visit.name, table.clause, table.mark_of(visit.region), uncertain_s)
 
     def demand_at(at_s: float) -> Demand | None:
         settled = settled_pu(evidence, visit.voltage_pu, at_s)

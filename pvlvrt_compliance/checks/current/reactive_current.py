@@ -6,19 +6,26 @@ by, so that the one formula holds for both, and for a swell too, where all of it
 """
 
 import math
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from pvlvrt_compliance.checks.check import Check
+from pvlvrt_compliance.checks.check import StretchCheck
+from pvlvrt_compliance.checks.current.idle import (
+    blocked_where_due,
+    destroyed_voltage,
+    is_blocked,
+    let_off_if_blocked,
+)
 from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
 from pvlvrt_compliance.data.marks import Marked
-from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require_finite, required
+from pvlvrt_compliance.disturbance.model import Stretch
+from pvlvrt_compliance.evidence.evidence import ANY_LIGHT, Evidence, NotApplicable, require_finite, required
 from pvlvrt_compliance.measure.quantities import WindowMeasurements
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.profile.requirements import ReactiveCurrent
 from pvlvrt_compliance.profile.requirements.current import DeadBandMode
-from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.results import Status, Verdict
 from pvlvrt_compliance.waveforms.container import Samples
 
 
@@ -40,6 +47,7 @@ class _Asked(NamedTuple):
     delta_u_pu: float  # what the voltage moved by, as a sag moves it
     clipped_pu: float  # additional reactive current
     clipped: bool
+    as_in_swell: bool  # more support is less reactive current; not where the voltage is what it was but for rounding
 
 
 class _Band(NamedTuple):
@@ -50,45 +58,68 @@ class _Band(NamedTuple):
     words: str
 
 
-class ReactiveCurrentCheck(Check):
+class _SequenceCheck(StretchCheck):
+    """Judges one sequence in each stretch up to the release."""
+
+    sequence: ClassVar[Sequence]
+    requirement = ReactiveCurrent
+
+    def judge_stretch(self, requirement: ReactiveCurrent, evidence: Evidence, stretch: Stretch) -> Verdict:
+        """Judge the mean additional reactive current of a settled stretch, less its mean before the first sag.
+
+        Raises
+        ------
+        NotApplicable
+            When the stretch is too short for a window, when the voltage ramps, when the bridge is blocked and may be,
+            or when the grid has no voltage of the sequence to tell reactive current by.
+        MeasurementError
+            When a voltage or a current cannot be measured.
+        """
+        return _judge(self.sequence, requirement, evidence, evidence.window_of(stretch, despite=ANY_LIGHT))
+
+
+class ReactiveCurrentCheck(_SequenceCheck):
     """Judges the reactive current that the inverter adds to raise V+ in a sag, against K times what V+ fell by."""
 
     kind = POSITIVE.kind
     title = "Reactive current of the positive sequence"
-    requirement = ReactiveCurrent
-
-    def judge(self, requirement: ReactiveCurrent, evidence: Evidence) -> Verdict:
-        """Judge the positive sequence; see `judge_sequence`."""
-        return judge_sequence(POSITIVE, requirement, evidence)
+    sequence = POSITIVE
 
 
-class NegativeSequenceCurrentCheck(Check):
+class NegativeSequenceCurrentCheck(_SequenceCheck):
     """Judges the reactive current that the inverter adds to lower V- in a sag, against K times what V- rose by."""
 
     kind = NEGATIVE.kind
     title = "Reactive current of the negative sequence"
-    requirement = ReactiveCurrent
-
-    def judge(self, requirement: ReactiveCurrent, evidence: Evidence) -> Verdict:
-        """Judge the negative sequence; see `judge_sequence`."""
-        return judge_sequence(NEGATIVE, requirement, evidence)
+    sequence = NEGATIVE
 
 
-def judge_sequence(sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence) -> Verdict:
-    """Judge the mean additional reactive current of a sequence during the sag, less its mean before.
-
-    Raises
-    ------
-    NotApplicable
-        When the sag is too short for a window, when the bridge is blocked and may be, or when the sequence has no
-        voltage to tell reactive current by.
-    MeasurementError
-        When a voltage or a current cannot be measured.
-    """
-    window = evidence.during()
-    _let_off(sequence, requirement, evidence, window)
+def _judge(sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence, window: WindowMeasurements) -> Verdict:
+    let_off_if_blocked(evidence, window, requirement.blocking_allowed_below_pu.value)
+    if sequence is POSITIVE:
+        if (destroyed := destroyed_voltage(sequence.kind, requirement, evidence, window)) is not None:
+            return destroyed
+    else:
+        _need_negative(evidence, window)
     asked = _asked(sequence, requirement, evidence, window)
-    band = _band(asked, requirement, bool(evidence.is_event(np.asarray(required(window.voltage_positive_pu, "V+")))))
+    event = bool(evidence.is_event(np.asarray(required(window.voltage_positive_pu, "V+"))))
+    verdict = _judge_band(sequence, requirement, evidence, window, asked, event)
+    is_due = event and asked.clipped_pu != 0
+    if verdict.status is Status.PASS and is_due and is_blocked(evidence, window):
+        rests_on = (requirement.k, requirement.blocking_allowed_below_pu)
+        return blocked_where_due(sequence.kind, requirement, evidence, window, rests_on)
+    return verdict
+
+
+def _judge_band(
+    sequence: Sequence,
+    requirement: ReactiveCurrent,
+    evidence: Evidence,
+    window: WindowMeasurements,
+    asked: _Asked,
+    event: bool,
+) -> Verdict:
+    band = _band(asked, requirement, event)
     t_s, additional = additional_current(sequence, evidence, Span(window.start_s, window.end_s))
     measured = mean_additional(sequence, evidence, window)
     to_high, to_low = band.high - measured, measured - band.low
@@ -104,28 +135,30 @@ def judge_sequence(sequence: Sequence, requirement: ReactiveCurrent, evidence: E
         margin=min(to_high, to_low),
         unit="pu",
         at_s=t_s[additional.argmax() if at_high else additional.argmin()],
-        rests_on=_rests_on(requirement, asked, is_more=at_high == (asked.delta_u_pu >= 0)),
+        rests_on=_rests_on(requirement, asked, is_more=at_high != asked.as_in_swell),
+        bound="at_most" if at_high else "at_least",
+        uncertainty=evidence.thresholds.uncertainty_current_pu.value,
     )
 
 
-def _let_off(sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence, window: WindowMeasurements) -> None:
-    v_positive = required(window.voltage_positive_pu, "V+")
-    allowed_below = requirement.blocking_allowed_below_pu.value
-    if v_positive < allowed_below and is_blocked(evidence, window):
-        raise NotApplicable(
-            f"the bridge is blocked at V+ = {v_positive:.3f} pu, which is allowed below {allowed_below:g} pu"
-        )
-    voltage = _voltage(sequence, window)
+def _need_negative(evidence: Evidence, window: WindowMeasurements) -> None:
+    """V- that the grid has and the terminals have not is what the support is for."""
+    voltage = _voltage(NEGATIVE, window)
     if voltage < evidence.thresholds.least_sequence_pu.value:
         raise NotApplicable(
-            f"the {sequence.name} sequence of the voltage is {voltage:.3f} pu: too little to tell reactive current by"
+            f"the negative sequence of the voltage is {voltage:.3f} pu: too little to tell reactive current by"
         )
 
 
-def is_blocked(evidence: Evidence, window: WindowMeasurements) -> bool:
-    """Whether no phase carries current for a cycle somewhere in the window."""
-    amplitudes = evidence.current_phase_pu[:, evidence.between(window.start_s, window.end_s)]
-    return bool((amplitudes < evidence.blocked_below_pu).all(axis=0).any())
+def due_current_pu(requirement: ReactiveCurrent, evidence: Evidence, window: WindowMeasurements) -> float:
+    """Additional reactive current of the positive sequence that is due in a window (pu), clipped as it is judged.
+
+    Raises
+    ------
+    MeasurementError
+        When a voltage or a current cannot be measured.
+    """
+    return _asked(POSITIVE, requirement, evidence, window).clipped_pu
 
 
 def _voltage(sequence: Sequence, window: WindowMeasurements) -> float:
@@ -135,8 +168,11 @@ def _voltage(sequence: Sequence, window: WindowMeasurements) -> float:
 
 
 def _reactive_series(sequence: Sequence, evidence: Evidence) -> Samples:
-    current = evidence.current_positive_pu if sequence is POSITIVE else evidence.current_negative_pu
-    return current.reactive
+    if sequence is POSITIVE:
+        return evidence.current_positive_pu.reactive
+    # A V- that passes through zero is no fault of anything; without it there is no reactive current of the sequence.
+    no_voltage = evidence.voltage_negative_pu < evidence.thresholds.voltage_floor_pu.value
+    return np.where(no_voltage, 0.0, evidence.current_negative_pu.reactive)
 
 
 def reactive_before(sequence: Sequence, evidence: Evidence) -> float:
@@ -193,7 +229,7 @@ def _band(asked: _Asked, requirement: ReactiveCurrent, event: bool) -> _Band:
     that waits for the threshold. So the band then reaches from zero to the demand, and beyond both by a tolerance.
     """
     below, above = requirement.tolerance_minus_pu.value, requirement.tolerance_plus_pu.value
-    if asked.delta_u_pu < 0:
+    if asked.as_in_swell:
         below, above = above, below
     demand = asked.clipped_pu
     words = f"{demand:+.3f} pu for a change of the voltage by {asked.delta_u_pu:+.3f} pu"
@@ -211,14 +247,16 @@ def _asked(sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence,
     """
     delta_u, before, demand = _unclipped(sequence, requirement, evidence, window)
     total = abs(before + demand)
+    as_in_swell = delta_u < -evidence.thresholds.voltage_tolerance_pu.value
     other = NEGATIVE if sequence is POSITIVE else POSITIVE
     of_other = evidence.requirements.of_kind(other.kind) if evidence.requirements is not None else None
     if of_other is not None:
         _, other_before, other_demand = _unclipped(other, of_other, evidence, window)
         total += abs(other_before + other_demand)
     if total <= requirement.limit_pu.value:
-        return _Asked(delta_u, demand, clipped=False)
-    return _Asked(delta_u, requirement.limit_pu.value / total * (before + demand) - before, clipped=True)
+        return _Asked(delta_u, demand, clipped=False, as_in_swell=as_in_swell)
+    clipped = requirement.limit_pu.value / total * (before + demand) - before
+    return _Asked(delta_u, clipped, clipped=True, as_in_swell=as_in_swell)
 
 
 def _unclipped(

@@ -1,12 +1,14 @@
-"""The inverter supports the voltage with the reactive power that the curve demands."""
+"""The inverter supports the voltage with the reactive power that the curve demands, at each level of the voltage."""
 
 from collections.abc import Callable
 
 import numpy as np
 
-from pvlvrt_compliance.checks.check import Check
+from pvlvrt_compliance.checks.check import StretchCheck
+from pvlvrt_compliance.checks.current.idle import destroyed_voltage
 from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
-from pvlvrt_compliance.evidence.evidence import Evidence, require_finite, required
+from pvlvrt_compliance.disturbance.model import Stretch
+from pvlvrt_compliance.evidence.evidence import ANY_LIGHT, Evidence, NotApplicable, require_finite, required
 from pvlvrt_compliance.measure.quantities import WindowMeasurements
 from pvlvrt_compliance.profile.requirements import ReactiveSupport
 from pvlvrt_compliance.results import Band, Verdict
@@ -16,47 +18,70 @@ from pvlvrt_compliance.waveforms.container import Samples
 KIND = "reactive_support"
 
 
-class ReactiveSupportCheck(Check):
-    """Judges mean Q during the sag against what the curve demands at its V+; near nominal none is demanded."""
+class ReactiveSupportCheck(StretchCheck):
+    """Judges mean Q in each sag against what the curve demands at its V+; near nominal none is demanded."""
 
     kind = KIND
     title = "Reactive power during a sag"
     requirement = ReactiveSupport
 
-    def judge(self, requirement: ReactiveSupport, evidence: Evidence) -> Verdict:
-        """Judge the mean Q during the sag at the V+ and V- measured at the terminals.
+    def judge_stretch(self, requirement: ReactiveSupport, evidence: Evidence, stretch: Stretch) -> Verdict:
+        """Judge the mean Q of a settled stretch at the V+ and V- measured at the terminals.
 
         Raises
         ------
         NotApplicable
-            When the sag is too short for a window.
+            When the stretch is too short for a window, the voltage ramps, or the grid has none; between two sags also
+            when the inverter fed reactive power before them.
         MeasurementError
             When Q, V+ or V- cannot be measured in it.
         """
-        window = evidence.during()
+        window = evidence.window_of(stretch, despite=ANY_LIGHT)
+        if (destroyed := destroyed_voltage(KIND, requirement, evidence, window)) is not None:
+            return destroyed
         if required(window.voltage_positive_pu, "V+") >= requirement.no_support_from_pu.value:
+            if stretch.kind == "normal" and stretch.begin_s > evidence.disturbance.start_s:
+                _let_off_with_a_set_point(requirement, evidence, window)
             return _judge_no_support(requirement, evidence, window)
         return _judge_support(requirement, evidence, window)
 
     def limits(self, requirement: ReactiveSupport, evidence: Evidence) -> tuple[Band, ...]:
-        """What is demanded over the window, less the tolerance; without support, the tolerance on either side."""
-        window = evidence.during()
-        v_positive = required(window.voltage_positive_pu, "V+")
-        tolerance = _tolerance_kvar(requirement, evidence, v_positive)
-        span = (window.start_s, window.end_s)
-        if v_positive >= requirement.no_support_from_pu.value:
-            edges = {"lower": (-tolerance, -tolerance), "upper": (tolerance, tolerance)}
-        else:
-            least = _demanded_kvar(requirement, evidence, window) - tolerance
-            edges = {"lower": (least, least)}
-        return (Band(check=KIND, quantity=REACTIVE_POWER, name="limit of Q", t_s=span, **edges),)
+        """What is demanded in each window, less the tolerance; without support, the tolerance on either side."""
+        return tuple(
+            _band(requirement, evidence, window)
+            for window in evidence.windows_of(self.stretches(requirement, evidence), despite=ANY_LIGHT)
+        )
+
+
+def _let_off_with_a_set_point(requirement: ReactiveSupport, evidence: Evidence, window: WindowMeasurements) -> None:
+    """Between sags an inverter goes on with the Q that it was asked for; without any, none is wanted."""
+    before = required(evidence.before().reactive_power_kvar, "the reactive power before the sag")
+    if abs(before) > _tolerance_kvar(requirement, evidence, required(window.voltage_positive_pu, "V+")):
+        raise NotApplicable(f"between sags the reactive power is that of normal operation: {before:.1f} kvar before")
+
+
+def _band(requirement: ReactiveSupport, evidence: Evidence, window: WindowMeasurements) -> Band:
+    v_positive = required(window.voltage_positive_pu, "V+")
+    tolerance = _tolerance_kvar(requirement, evidence, v_positive)
+    span = (window.start_s, window.end_s)
+    if v_positive >= requirement.no_support_from_pu.value:
+        edges = {"lower": (-tolerance, -tolerance), "upper": (tolerance, tolerance)}
+    else:
+        least = _demanded_kvar(requirement, evidence, window) - tolerance
+        edges = {"lower": (least, least)}
+    return Band(check=KIND, quantity=REACTIVE_POWER, name="limit of Q", t_s=span, **edges)
 
 
 def demanded_pu(requirement: ReactiveSupport, v_positive_pu: float, v_negative_pu: float) -> float:
     """Reactive power demanded at V+ and V- (pu of S): the curve, and at most what eq (8) leaves room for."""
-    by_curve = float(requirement.curve.reactive_power_at(v_positive_pu))
-    capability = v_positive_pu - v_negative_pu
-    return min(by_curve, max(capability, 0.0)) if requirement.clip_to_capability.value else by_curve
+    return float(demanded_at_pu(requirement, np.asarray(v_positive_pu), np.asarray(v_negative_pu)))
+
+
+def demanded_at_pu(requirement: ReactiveSupport, v_positive_pu: Samples, v_negative_pu: Samples) -> Samples:
+    """The same of many V+ and V- (pu), of one shape."""
+    by_curve: Samples = requirement.curve.reactive_power_at(v_positive_pu)
+    capability = np.maximum(v_positive_pu - v_negative_pu, 0.0)
+    return np.minimum(by_curve, capability) if requirement.clip_to_capability.value else by_curve
 
 
 def _demanded_kvar(requirement: ReactiveSupport, evidence: Evidence, window: WindowMeasurements) -> float:
@@ -87,6 +112,9 @@ def _judge_support(requirement: ReactiveSupport, evidence: Evidence, window: Win
         unit="kvar",
         at_s=_worst_instant_s(evidence, window, np.argmin),
         rests_on=(requirement.curve, requirement.clip_to_capability, requirement.tolerance_pu),
+        bound="at_least",
+        tolerance=tolerance,
+        uncertainty=evidence.power_uncertainty_kva,
     )
 
 
@@ -108,6 +136,8 @@ def _judge_no_support(requirement: ReactiveSupport, evidence: Evidence, window: 
         unit="kvar",
         at_s=_worst_instant_s(evidence, window, lambda q: np.argmax(np.abs(q))),
         rests_on=(requirement.no_support_from_pu, requirement.tolerance_pu),
+        bound="band",
+        uncertainty=evidence.power_uncertainty_kva,
     )
 
 

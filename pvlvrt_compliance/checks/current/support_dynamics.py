@@ -1,75 +1,150 @@
 """The additional reactive current of the positive sequence comes and settles in time."""
 
-from pvlvrt_compliance.checks.check import Check
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from pvlvrt_compliance.checks.check import StretchCheck
+from pvlvrt_compliance.checks.current.idle import (
+    blocked_where_due,
+    destroyed_voltage,
+    is_blocked,
+    let_off_if_blocked,
+)
 from pvlvrt_compliance.checks.current.reactive_current import (
     POSITIVE,
-    additional_current,
-    is_blocked,
+    due_current_pu,
     mean_additional,
+    reactive_before,
 )
 from pvlvrt_compliance.checks.parts import Part, judged_by_parts
-from pvlvrt_compliance.data.marks import Number
-from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require_finite, required
+from pvlvrt_compliance.data.marks import Marked, Number
+from pvlvrt_compliance.disturbance.model import Stretch
+from pvlvrt_compliance.evidence.evidence import ANY_LIGHT, Evidence, NotApplicable, require_finite, required
 from pvlvrt_compliance.measure.events import EventThresholds, detect_events
+from pvlvrt_compliance.measure.quantities import WindowMeasurements
 from pvlvrt_compliance.measure.response import first_reached, last_entry
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.profile.procedure import Detection
-from pvlvrt_compliance.profile.requirements import SupportDynamics
+from pvlvrt_compliance.profile.requirements import ReactiveCurrent, SupportDynamics
 from pvlvrt_compliance.results import Verdict
 from pvlvrt_compliance.waveforms.container import Samples
 
 KIND = "support_dynamics"
 
+_LOOK_BACK_S = 0.002  # more than a sampling step, far less than a cycle
 
-class SupportDynamicsCheck(Check):
-    """Judges how soon the additional reactive current comes on, responds and settles after the sag begins."""
+
+class SupportDynamicsCheck(StretchCheck):
+    """Judges how soon the additional reactive current comes on, responds and settles after each step into a sag."""
 
     kind = KIND
     title = "Response of the reactive current"
     requirement = SupportDynamics
 
-    def judge(self, requirement: SupportDynamics, evidence: Evidence) -> Verdict:
+    def stretches(self, requirement: SupportDynamics, evidence: Evidence) -> tuple[Stretch, ...]:
+        """Those that begin with a step of the voltage."""
+        steps_s = evidence.disturbance.voltage_steps_s
+        return tuple(part for part in super().stretches(requirement, evidence) if part.begin_s in steps_s)
+
+    def judge_stretch(self, requirement: SupportDynamics, evidence: Evidence, stretch: Stretch) -> Verdict:
         """Judge activation, response and settling on the one-cycle reactive current; the nearest to failing is told.
 
-        The final value is the mean over the during-window less the mean before the sag. Times count from the start of
-        the sag: where the profile has thresholds of detection from the first V+ beyond them (NTS 631: t_i, U+ < 0.85),
-        measured over a cycle like the current, so that the delay of the window is on both sides; else from the instant
-        asked for.
+        What is due is what reactive_current demands at the voltage of the stretch, less what it forgives; in a profile
+        without that requirement, the mean over the settled stretch. Times count from the step: where the profile has
+        thresholds of detection from the first V+ beyond them (NTS 631: t_i, U+ < 0.85), measured over a cycle like the
+        current, so that the delay of the window is on both sides; else from the instant asked for.
 
         Raises
         ------
         NotApplicable
-            When the sag is too short to settle in, is no event, leaves no voltage to tell reactive current by, when the
-            bridge is blocked, or when the current hardly changes.
+            When the stretch is too short to settle in, is no event, leaves no voltage to tell reactive current by, when
+            the bridge is blocked and may be, or when the current hardly has to change.
         MeasurementError
             When V+ or the current cannot be measured.
         """
-        final_pu = _final_change(requirement, evidence)
-        start_s = _event_start_s(evidence)
-        t_s, additional = additional_current(POSITIVE, evidence, Span(start_s, evidence.disturbance.clear_s))
-        return judged_by_parts(KIND, requirement, _parts(requirement, t_s, additional / final_pu, abs(final_pu)))
+        window = evidence.window_of(stretch, despite=ANY_LIGHT)
+        if not evidence.is_event(np.asarray(required(window.voltage_positive_pu, "V+"))):
+            raise NotApplicable("V+ does not pass the threshold of detection: there is no response to time")
+        demand = _reactive_current(evidence)
+        let_off_if_blocked(evidence, window, demand.blocking_allowed_below_pu.value if demand else 0.0)
+        if (destroyed := destroyed_voltage(KIND, requirement, evidence, window)) is not None:
+            return destroyed
+        if demand is None and is_blocked(evidence, window):
+            return blocked_where_due(KIND, requirement, evidence, window, (requirement.activation_pu,))
+        t_s, additional = _additional(evidence, _event_start_s(evidence, stretch), stretch.end_s)
+        _, before = _additional(evidence, stretch.begin_s - _LOOK_BACK_S, stretch.begin_s)
+        task = _task(requirement, demand, evidence, window, float(before[-1]))
+        return judged_by_parts(KIND, requirement, _parts(requirement, evidence, t_s, task.sign * additional, task))
 
 
-def _final_change(requirement: SupportDynamics, evidence: Evidence) -> float:
-    window = evidence.during()
-    if is_blocked(evidence, window):
-        raise NotApplicable("the bridge is blocked during the sag: there is no response to time")
-    if (v_positive := required(window.voltage_positive_pu, "V+")) < evidence.thresholds.least_sequence_pu.value:
-        raise NotApplicable(f"V+ is {v_positive:.3f} pu: too little to tell reactive current by")
-    final_pu = mean_additional(POSITIVE, evidence, window)
-    if abs(final_pu) < requirement.least_change_pu.value:
+class _Task(NamedTuple):
+    """What the additional reactive current has to do in a stretch (pu); positive is more support."""
+
+    sign: int  # of the additional current by which support is more
+    before: float  # at the step
+    goal: float  # what it has to come to at least, or, from above, at most
+    low: float  # it settles between these
+    high: float
+    rests_on: tuple[Marked, ...]
+
+    @property
+    def change(self) -> float:
+        return self.goal - self.before
+
+
+def _reactive_current(evidence: Evidence) -> ReactiveCurrent | None:
+    if evidence.requirements is None:
+        return None
+    found: ReactiveCurrent | None = evidence.requirements.of_kind(POSITIVE.kind)
+    return found
+
+
+def _task(
+    requirement: SupportDynamics,
+    demand: ReactiveCurrent | None,
+    evidence: Evidence,
+    window: WindowMeasurements,
+    before_pu: float,
+) -> _Task:
+    final = mean_additional(POSITIVE, evidence, window)
+    due = final if demand is None else due_current_pu(demand, evidence, window)
+    sign = -1 if due < 0 else 1
+    least, most = (abs(due), abs(due)) if demand is None else _forgiven(demand, abs(due))
+    before = sign * before_pu
+    goal = min(max(before, least), most)
+    if abs(goal - before) < requirement.least_change_pu.value:
         raise NotApplicable(
-            f"the reactive current changes by {final_pu:+.3f} pu, less than the {requirement.least_change_pu.value:g} "
-            "pu from which a response is timed"
+            f"the reactive current has to change by {goal - before:+.3f} pu, less than the "
+            f"{requirement.least_change_pu.value:g} pu from which a response is timed"
         )
-    return final_pu
+    low = least * (1 - requirement.band_minus.value)
+    high = max(sign * final, least) * (1 + requirement.band_plus.value)
+    rests_on = () if demand is None else (demand.k, demand.tolerance_minus_pu)
+    return _Task(sign, before, goal, low, high, rests_on)
 
 
-def _event_start_s(evidence: Evidence) -> float:
-    grid = evidence.disturbance
+def _forgiven(demand: ReactiveCurrent, due_pu: float) -> tuple[float, float]:
+    """Least and most that pass as what is due (pu): no steady current within the tolerances is out of time."""
+    return max(due_pu - demand.tolerance_minus_pu.value, 0.0), due_pu + demand.tolerance_plus_pu.value
+
+
+def _additional(evidence: Evidence, begin_s: float, end_s: float) -> tuple[Samples, Samples]:
+    """Instants (s) and reactive current of the positive sequence less its mean before the first sag (pu).
+
+    Without voltage there is no reactive current.
+    """
+    inside = evidence.between(begin_s, end_s)
+    t_s = evidence.t_s[inside]
+    current = require_finite(evidence.reactive_current_pu[inside], "the reactive current", t_s)
+    return t_s, current - reactive_before(POSITIVE, evidence)
+
+
+def _event_start_s(evidence: Evidence, stretch: Stretch) -> float:
     if evidence.detection is None:
-        return grid.start_s
-    inside = evidence.between(grid.start_s, grid.clear_s)
+        return stretch.begin_s
+    inside = evidence.between(stretch.begin_s, stretch.end_s)
     t_s = evidence.t_s[inside]
     v_positive = require_finite(evidence.voltage_positive_pu[inside], "V+", t_s)
     events = detect_events(t_s, v_positive, v_positive, _thresholds(evidence.detection))
@@ -88,49 +163,58 @@ def _thresholds(detection: Detection) -> EventThresholds:
     )
 
 
-def _parts(requirement: SupportDynamics, t_s: Samples, y: Samples, final_pu: float) -> tuple[Part, Part, Part]:
-    """The three times; ``y`` is the additional current as a fraction of its final change."""
-    start_s, clear_s = float(t_s[0]), float(t_s[-1])
-    band = 1 - requirement.band_minus.value, 1 + requirement.band_plus.value
-    activated_s = first_reached(t_s, y, requirement.activation_pu.value / final_pu)
-    responded_s = first_reached(t_s, y, requirement.response_fraction.value)
-    settled_s = last_entry(t_s, y, *band)
-    begun_s = clear_s if activated_s is None else activated_s
-    if settled_s is not None:
-        settled_s = max(settled_s, begun_s)
-    return (
-        _time(
-            f"activation, to {requirement.activation_pu.value:g} pu of additional reactive current",
-            Span(start_s, clear_s),
+def _parts(requirement: SupportDynamics, evidence: Evidence, t_s: Samples, support: Samples, task: _Task) -> list[Part]:
+    """The times; ``support`` is the additional current, positive where it is more support (pu).
+
+    Of a current that is never active there is no settling.
+    """
+    observed = Span(float(t_s[0]), float(t_s[-1]))
+    moved = np.sign(task.change) * (support - task.before)
+    activated_s = first_reached(t_s, moved, requirement.activation_pu.value)
+    responded_s = first_reached(t_s, moved, requirement.response_fraction.value * abs(task.change))
+    size, share = requirement.activation_pu, requirement.response_fraction
+    timed = partial(_time, uncertainty=evidence.half_cycle_s)
+    found = [
+        timed(
+            f"activation, to {size.value:g} pu of additional reactive current",
+            observed,
             activated_s,
-            (requirement.activation_s, requirement.activation_pu),
+            requirement.activation_s,
+            (size,),
         ),
-        _time(
-            f"response, to {100 * requirement.response_fraction.value:g} % of the final {final_pu:.3f} pu",
-            Span(start_s, clear_s),
+        timed(
+            f"response, to {100 * share.value:g} % of the way from {task.before:.3f} pu to the {task.goal:.3f} pu due",
+            observed,
             responded_s,
-            (requirement.response_s, requirement.response_fraction),
+            requirement.response_s,
+            (share, *task.rests_on),
         ),
-        _time(
-            f"settling, from activation, in the band around the final {final_pu:.3f} pu",
-            Span(begun_s, clear_s),
-            settled_s,
-            (requirement.settling_s, requirement.activation_pu, requirement.band_plus, requirement.band_minus),
-        ),
+    ]
+    if activated_s is None:
+        return found
+    entered_s = last_entry(t_s, support, task.low, task.high)
+    settled = timed(
+        f"settling, from activation, between {task.low:.3f} pu and {task.high:.3f} pu",
+        Span(activated_s, observed.end_s),
+        None if entered_s is None else max(entered_s, activated_s),
+        requirement.settling_s,
+        (size, requirement.band_plus, requirement.band_minus, *task.rests_on),
     )
+    return [*found, settled]
 
 
-def _time(what: str, observed: Span, reached_s: float | None, rests_on: tuple[Number, ...]) -> Part:
-    """Time to an instant, the first of ``rests_on`` being its limit; what is never reached took all that was observed.
+def _time(
+    what: str, observed: Span, reached_s: float | None, limit: Number, rests_on: tuple[Marked, ...], uncertainty: float
+) -> Part:
+    """Time to an instant; what is never reached took all that was observed.
 
     Raises
     ------
     NotApplicable
-        When it was not reached, and need not be before the sag is over.
+        When it was not reached, and need not be before the stretch is over.
     """
-    limit_s = rests_on[0].value
     at_s = observed.end_s if reached_s is None else reached_s
     took_s = at_s - observed.start_s
-    if reached_s is None and took_s <= limit_s:
-        raise NotApplicable(f"the sag is cleared {took_s:.3f} s after the start of the {what}, before its limit")
-    return Part(what, took_s, limit_s, "s", at_s, rests_on)
+    if reached_s is None and took_s <= limit.value:
+        raise NotApplicable(f"the sag is over {took_s:.3f} s after the start of the {what}, before its limit")
+    return Part(what, took_s, limit.value, "s", at_s, (limit, *rests_on), uncertainty)

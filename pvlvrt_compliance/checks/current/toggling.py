@@ -20,6 +20,12 @@ class TogglingCheck(StretchCheck):
     kind = KIND
     title = "Support that switches on and off"
     requirement = Toggling
+    until = "trip"
+
+    def stretches(self, requirement: Toggling, evidence: Evidence) -> tuple[Stretch, ...]:  # noqa: ARG002
+        """All that follow a step of the voltage; what else moves is no reason for support to come."""
+        end_s = evidence.stretches_until(self.until)[-1].end_s
+        return evidence.disturbance.voltage_stretches(end_s)
 
     def judge_stretch(self, requirement: Toggling, evidence: Evidence, stretch: Stretch) -> Verdict:
         """Count how often the reactive current comes on after having been off, while the voltage asked for stands.
@@ -55,6 +61,7 @@ class TogglingCheck(StretchCheck):
             unit="activations",
             at_s=begin_s if passed else activations_at_s[int(most)],
             rests_on=(requirement.on_pu, requirement.off_pu, requirement.most_activations, requirement.settling_s),
+            bound="at_most",
         )
 
 

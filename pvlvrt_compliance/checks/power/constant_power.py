@@ -1,7 +1,10 @@
 """The active power stays free of ripple at twice the grid frequency during a sag."""
 
-from pvlvrt_compliance.checks.check import Check
+from collections.abc import Sequence
+
+from pvlvrt_compliance.checks.check import StretchCheck
 from pvlvrt_compliance.checks.verdicts import judged_at_most
+from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.evidence.evidence import Evidence, required
 from pvlvrt_compliance.profile.requirements import ConstantPower
 from pvlvrt_compliance.results import Verdict
@@ -9,26 +12,31 @@ from pvlvrt_compliance.results import Verdict
 KIND = "constant_power"
 
 
-class ConstantPowerCheck(Check):
-    """Judges the ripple of P at twice the grid frequency during the sag, as a fraction of rated power."""
+class ConstantPowerCheck(StretchCheck):
+    """Judges the ripple of P at twice the grid frequency in each stretch of a sag, as a fraction of rated power."""
 
     kind = KIND
     title = "Ripple of the active power"
     requirement = ConstantPower
+    until = "trip"
 
-    def judge(self, requirement: ConstantPower, evidence: Evidence) -> Verdict:
-        """Judge the amplitude of the double-frequency component of P during the sag, in fractions of rated power.
+    def stretches(self, requirement: ConstantPower, evidence: Evidence) -> Sequence[Stretch]:  # noqa: ARG002
+        """Those at another voltage than before; of a test that leaves the voltage alone, all."""
+        return evidence.departed_until(self.until)
+
+    def judge_stretch(self, requirement: ConstantPower, evidence: Evidence, stretch: Stretch) -> Verdict:
+        """Judge the amplitude of the double-frequency component of P in the stretch's window.
 
         A component over a window has no worst instant: the verdict points to where the window begins.
 
         Raises
         ------
         NotApplicable
-            When the sag is too short for a window.
+            When something moves in the stretch, or it is too short for a window.
         MeasurementError
             When P cannot be measured in it.
         """
-        window = evidence.during()
+        window = evidence.window_of(stretch)
         measured = required(window.active_power_2f_kw, "the ripple of P")
         limit = requirement.limit_fraction.value * evidence.nominal.apparent_power_kva
         return judged_at_most(
@@ -41,4 +49,5 @@ class ConstantPowerCheck(Check):
             unit="kW",
             at_s=window.start_s,
             rests_on=(requirement.limit_fraction,),
+            uncertainty=evidence.power_uncertainty_kva,
         )

@@ -1,12 +1,14 @@
 """The inverter takes no more from the grid during a fault than its zones allow."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from pvlvrt_compliance.checks.check import Check
+from pvlvrt_compliance.checks.check import StretchCheck
 from pvlvrt_compliance.checks.parts import Part, judged_by_parts
+from pvlvrt_compliance.checks.power.faults import faults, is_cut_by_trip, next_fault_s, window_in
 from pvlvrt_compliance.data.marks import Number
+from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require_finite
 from pvlvrt_compliance.measure.windows import Span
@@ -18,34 +20,40 @@ from pvlvrt_compliance.waveforms.container import Samples
 KIND = "consumption"
 
 
-class ConsumptionCheck(Check):
-    """Judges power, energy and reactive current taken from the grid in a fault and after it, zone by zone."""
+class ConsumptionCheck(StretchCheck):
+    """Judges power, energy and reactive current taken from the grid in each fault and after it, zone by zone."""
 
     kind = KIND
     title = "Consumption during a fault"
     requirement = Consumption
+    until = "trip"
 
-    def judge(self, requirement: Consumption, evidence: Evidence) -> Verdict:
+    def stretches(self, requirement: Consumption, evidence: Evidence) -> Sequence[Stretch]:  # noqa: ARG002
+        """The faults, each from its start to its clearing."""
+        return faults(evidence)
+
+    def judge_stretch(self, requirement: Consumption, evidence: Evidence, stretch: Stretch) -> Verdict:
         """Judge power and energy taken from the grid by zone; reports the least margin relative to its limit.
 
         Powers and the reactive current are one-cycle means and phasors of cycles that lie wholly in the zone. An energy
         adds up what is taken cycle by cycle from the zone's beginning, the last cycle cut where the zone ends; what one
         cycle feeds does not make up for what another takes. A fault is unbalanced when its mean V- in the
-        during-window, or without one its highest one-cycle V-, reaches ``unbalanced_from_pu``.
+        during-window, or without one its highest one-cycle V-, reaches ``unbalanced_from_pu``. A trip and the next
+        fault end a zone.
 
         Raises
         ------
         NotApplicable
-            When the profile limits nothing in this test.
+            When the profile limits nothing in this fault.
         MeasurementError
             When V-, P, Q or the current cannot be measured in a zone, or the record ends in one.
         """
-        zones = _zones(requirement, evidence)
-        return judged_by_parts(KIND, requirement, list(_parts(zones, evidence)))
+        zones = _zones(requirement, evidence, stretch)
+        return judged_by_parts(KIND, requirement, list(_parts(zones, evidence, stretch)))
 
 
-def _zones(requirement: Consumption, evidence: Evidence) -> ConsumptionZones:
-    negative_pu = _negative_pu(evidence)
+def _zones(requirement: Consumption, evidence: Evidence, fault: Stretch) -> ConsumptionZones:
+    negative_pu = _negative_pu(evidence, fault)
     if negative_pu < requirement.unbalanced_from_pu.value:
         return requirement.balanced
     if requirement.unbalanced is None:
@@ -53,19 +61,28 @@ def _zones(requirement: Consumption, evidence: Evidence) -> ConsumptionZones:
     return requirement.unbalanced
 
 
-def _negative_pu(evidence: Evidence) -> float:
-    during = evidence.during_span
-    inside = evidence.between(*(during or (evidence.disturbance.start_s, evidence.disturbance.clear_s)))
+def _negative_pu(evidence: Evidence, fault: Stretch) -> float:
+    during = window_in(fault, evidence)
+    inside = evidence.between(*(during or (fault.begin_s, fault.end_s)))
     negative = require_finite(evidence.voltage_negative_pu[inside], "V-", evidence.t_s[inside])
     return float(negative.max() if during is None else np.average(negative, weights=evidence.step_s[inside]))
 
 
-def _parts(zones: ConsumptionZones, evidence: Evidence) -> Iterator[Part]:
+def _after(evidence: Evidence, fault: Stretch, transient_s: float) -> Span:
+    """Zone C, empty where the inverter trips in the fault."""
+    if is_cut_by_trip(fault, evidence):
+        return Span(fault.end_s, fault.end_s)
+    next_s = next_fault_s(fault, evidence)
+    end_s = fault.end_s + transient_s
+    return Span(fault.end_s, end_s if next_s is None else min(end_s, next_s))
+
+
+def _parts(zones: ConsumptionZones, evidence: Evidence, fault: Stretch) -> Iterator[Part]:
     """Every limit that is stated, in the zones that the fault is long enough for."""
-    start_s, clear_s = evidence.disturbance.start_s, evidence.disturbance.clear_s
     transient_s = zones.transient_s.value
-    end_of_a_s = min(start_s + transient_s, clear_s)
-    a, b, c = Span(start_s, end_of_a_s), Span(end_of_a_s, clear_s), Span(clear_s, clear_s + transient_s)
+    end_of_a_s = min(fault.begin_s + transient_s, fault.end_s)
+    a, b = Span(fault.begin_s, end_of_a_s), Span(end_of_a_s, fault.end_s)
+    c = _after(evidence, fault, transient_s)
     yield from _power("zone A: reactive power", evidence, a, "Q", zones.reactive_power_a)
     yield from _energy("zone A: reactive energy", evidence, a, "Q", zones.reactive_energy_a_s)
     yield from _power("zone B: active power", evidence, b, "P", zones.active_power_b)
@@ -80,28 +97,31 @@ def _power(what: str, evidence: Evidence, zone: Span, which: str, limit: Number 
     """Largest one-cycle mean of what is taken (kW or kvar)."""
     if limit is not None:
         mean = evidence.active_power_kw if which == "P" else evidence.reactive_power_kvar
-        yield from _largest(
-            f"{what} taken", evidence, zone, -mean, limit, evidence.nominal.apparent_power_kva, _unit(which)
-        )
+        limit_kva = limit.value * evidence.nominal.apparent_power_kva
+        part = Part(f"{what} taken", 0.0, limit_kva, _unit(which), 0.0, (limit,), evidence.power_uncertainty_kva)
+        yield from _largest(part, evidence, zone, -mean)
 
 
 def _reactive_current(evidence: Evidence, zone: Span, limit: Number | None) -> Iterator[Part]:
     if limit is not None:
         taken = -evidence.current_positive_pu.reactive
-        yield from _largest("zone C: reactive current taken", evidence, zone, taken, limit, 1.0, "pu")
+        uncertainty = evidence.thresholds.uncertainty_current_pu.value
+        part = Part("zone C: reactive current taken", 0.0, limit.value, "pu", 0.0, (limit,), uncertainty)
+        yield from _largest(part, evidence, zone, taken)
 
 
-def _largest(
-    what: str, evidence: Evidence, zone: Span, taken: Samples, limit: Number, base: float, unit: str
-) -> Iterator[Part]:
+def _largest(limited: Part, evidence: Evidence, zone: Span, taken: Samples) -> Iterator[Part]:
+    """A part with the largest value that a series has in a zone."""
+    if zone.end_s <= zone.start_s:
+        return
     _require_recorded(evidence, zone)
     inside = evidence.between(zone.start_s + 1 / evidence.frequency_hz, zone.end_s)
     t_s = evidence.t_s[inside]
     if len(t_s):
-        values = require_finite(taken[inside], what, t_s)
+        values = require_finite(taken[inside], limited.what, t_s)
         worst = int(values.argmax())
         measured = max(float(values[worst]), 0.0)
-        yield Part(f"{what} from the grid", measured, limit.value * base, unit, float(t_s[worst]), (limit,))
+        yield limited._replace(what=f"{limited.what} from the grid", measured=measured, at_s=float(t_s[worst]))
 
 
 def _energy(what: str, evidence: Evidence, zone: Span, which: str, limit: Number | None) -> Iterator[Part]:
@@ -113,7 +133,10 @@ def _energy(what: str, evidence: Evidence, zone: Span, which: str, limit: Number
     taken = np.maximum(-energies, 0.0)
     limit_kws = limit.value * evidence.nominal.apparent_power_kva
     at_s = float(ends_s[taken.argmax()])
-    yield Part(f"{what} taken from the grid", float(taken.sum()), limit_kws, f"{_unit(which)} s", at_s, (limit,))
+    uncertainty = evidence.power_uncertainty_kva * (zone.end_s - zone.start_s)
+    yield Part(
+        f"{what} taken from the grid", float(taken.sum()), limit_kws, f"{_unit(which)} s", at_s, (limit,), uncertainty
+    )
 
 
 def _energies(evidence: Evidence, zone: Span, which: str) -> tuple[Samples, Samples]:

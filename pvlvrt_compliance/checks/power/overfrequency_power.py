@@ -21,17 +21,18 @@ class OverfrequencyPowerCheck(Check):
     kind = KIND
     title = "Active power at over-frequency"
     requirement = OverfrequencyPower
+    judges_up_to_trip = True
 
     def judge(self, requirement: OverfrequencyPower, evidence: Evidence) -> Verdict:
         """Judge the one-cycle mean of P wherever the frequency has been above the threshold for the time of activation.
 
         P must be P_before (1 - (f - threshold) / (droop f_nominal)), not below 0, within the tolerance on either side.
-        Reports the instant that lies furthest off.
+        Up to a trip. Reports the instant that lies furthest off.
 
         Raises
         ------
         NotApplicable
-            When the frequency never exceeds the threshold, or not for long enough.
+            When the frequency never exceeds the threshold, or not for long enough before a trip.
         MeasurementError
             When P or the frequency cannot be measured.
         """
@@ -58,6 +59,7 @@ class OverfrequencyPowerCheck(Check):
                 requirement.activation_s,
                 requirement.tolerance_fraction,
             ),
+            uncertainty=evidence.power_uncertainty_kva,
         )
 
 
@@ -65,20 +67,25 @@ def demanded_kw(requirement: OverfrequencyPower, evidence: Evidence, frequency: 
     """Power that the droop asks for at frequencies above the threshold (kW), shape of ``frequency`` (Hz)."""
     above_hz = frequency - requirement.threshold_hz.value
     share = 1 - above_hz / (requirement.droop_fraction.value * evidence.nominal.frequency_hz)
-    demanded: Samples = evidence.power_before_kw * np.maximum(share, 0.0)
+    demanded: Samples = evidence.starting_power_kw * np.maximum(share, 0.0)
     return demanded
 
 
 def _active(requirement: OverfrequencyPower, evidence: Evidence, frequency: Samples) -> Mask:
     threshold, activation_s = requirement.threshold_hz.value, requirement.activation_s.value
-    found = excursions(frequency > threshold, evidence.t_s)
+    tripped_s = evidence.known_opening_s
+    judged = evidence.t_s < (np.inf if tripped_s is None else tripped_s)
+    found = excursions((frequency > threshold) & judged, evidence.t_s)
     if not found:
-        raise NotApplicable(f"the frequency never exceeds {threshold:g} Hz")
+        when = "" if tripped_s is None else f" before the trip at {tripped_s:.3f} s"
+        raise NotApplicable(f"the frequency never exceeds {threshold:g} Hz{when}")
     active = np.zeros(len(evidence.t_s), dtype=np.bool_)
     for begin_s, end_s in found:
         active |= (evidence.t_s > begin_s + activation_s) & (evidence.t_s < end_s)
+    active &= judged
     if not active.any():
         raise NotApplicable(
             f"the frequency exceeds {threshold:g} Hz for less than the {activation_s:g} s of activation"
+            + ("" if tripped_s is None else f" before the trip at {tripped_s:.3f} s")
         )
     return active

@@ -6,6 +6,7 @@ from pvlvrt_compliance.checks.check import Check
 from pvlvrt_compliance.checks.parts import Part, by_margin, judged_by_parts
 from pvlvrt_compliance.data.marks import Number
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, required
+from pvlvrt_compliance.evidence.frequency import ends_at_another_frequency
 from pvlvrt_compliance.profile.requirements import ReturnToPrefault
 from pvlvrt_compliance.results import Verdict
 
@@ -22,6 +23,8 @@ class ReturnToPrefaultCheck(Check):
     def judge(self, requirement: ReturnToPrefault, evidence: Evidence) -> Verdict:
         """Judge mean P and Q of the window `after` against the window `before`; reports the one with the least margin.
 
+        Whichever of the two the profile limits; Q also against a fraction of V+ S, with the V+ of the window `after`.
+
         Raises
         ------
         NotApplicable
@@ -34,24 +37,35 @@ class ReturnToPrefaultCheck(Check):
 
 
 def _parts(requirement: ReturnToPrefault, evidence: Evidence) -> list[Part]:
+    """Each limit that is stated, in fractions of rated power."""
+    limits = (
+        ("P", "kW", "active_power_kw", requirement.active_fraction, 1.0),
+        ("Q", "kvar", "reactive_power_kvar", requirement.reactive_fraction, 1.0),
+        ("Q", "kvar", "reactive_power_kvar", requirement.reactive_pu, None),
+    )
     return [
-        _part("P", "kW", *_before_and_after(evidence, "active_power_kw"), requirement.active_fraction, evidence),
-        _part(
-            "Q", "kvar", *_before_and_after(evidence, "reactive_power_kvar"), requirement.reactive_fraction, evidence
-        ),
+        _part(name, unit, *_before_and_after(evidence, quantity), limit, times or _voltage_pu(evidence), evidence)
+        for name, unit, quantity, limit, times in limits
+        if limit is not None
     ]
 
 
-def _part(name: str, unit: str, before: float, after: float, limit: Number, evidence: Evidence) -> Part:
+def _voltage_pu(evidence: Evidence) -> float:
+    after = evidence.measurements.after
+    return required(after.voltage_positive_pu if after else None, "V+ at the end of the record")
+
+
+def _part(name: str, unit: str, before: float, after: float, limit: Number, times: float, evidence: Evidence) -> Part:
     window = evidence.measurements.after
     return Part(
         what=f"{name} is {after:.1f} {unit} at the end and was {before:.1f} {unit} before the disturbance, distance in "
         "fractions of rated power",
         measured=abs(after - before) / evidence.nominal.apparent_power_kva,
-        limit=limit.value,
+        limit=limit.value * times,
         unit="pu",
         at_s=window.start_s if window else evidence.waveforms.end_s,
         rests_on=(limit,),
+        uncertainty=evidence.thresholds.uncertainty_power_pu.value,
     )
 
 
@@ -70,7 +84,5 @@ def _require_same_conditions(evidence: Evidence) -> None:
         raise NotApplicable("the irradiance at the end is not that of the beginning")
     if not grid.is_normal(evidence.waveforms.end_s if grid.record_end_s is None else grid.record_end_s):
         raise NotApplicable("the voltage does not come back in this test")
-    before, after = evidence.measurements.before, evidence.measurements.after
-    first, last = (window.frequency_hz if window else None for window in (before, after))
-    if first is not None and last is not None and abs(last - first) > evidence.thresholds.frequency_deviation_hz.value:
-        raise NotApplicable(f"the frequency ends at {last:.2f} Hz and began at {first:.2f} Hz")
+    if (found := ends_at_another_frequency(evidence)) is not None:
+        raise NotApplicable(f"the frequency ends at {found[1]:.2f} Hz and began at {found[0]:.2f} Hz")

@@ -19,6 +19,7 @@ class DcInjectionCheck(Check):
     kind = KIND
     title = "Direct current into the grid"
     requirement = DcInjection
+    judges_up_to_trip = True
 
     def judge(self, requirement: DcInjection, evidence: Evidence) -> Verdict:
         """Judge the mean of each phase current over ten or twelve cycles before the disturbance, in percent of rated.

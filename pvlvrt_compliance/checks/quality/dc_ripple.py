@@ -1,7 +1,10 @@
 """The DC voltage stays free of ripple at twice the grid frequency."""
 
-from pvlvrt_compliance.checks.check import Check
+from collections.abc import Sequence
+
+from pvlvrt_compliance.checks.check import StretchCheck
 from pvlvrt_compliance.checks.verdicts import judged_at_most
+from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.evidence.evidence import Evidence, require_finite, required
 from pvlvrt_compliance.profile.requirements import DcRipple
 from pvlvrt_compliance.results import Verdict
@@ -9,26 +12,31 @@ from pvlvrt_compliance.results import Verdict
 KIND = "dc_ripple"
 
 
-class DcRippleCheck(Check):
-    """Judges the ripple of v_DC at twice the grid frequency during the sag, in percent of its mean."""
+class DcRippleCheck(StretchCheck):
+    """Judges the ripple of v_DC at twice the grid frequency in the stretch's window, in percent of its mean."""
 
     kind = KIND
     title = "Ripple of the DC voltage"
     requirement = DcRipple
+    until = "trip"
 
-    def judge(self, requirement: DcRipple, evidence: Evidence) -> Verdict:
-        """Judge the amplitude of the double-frequency component of v_DC during the sag, in percent of its mean.
+    def stretches(self, requirement: DcRipple, evidence: Evidence) -> Sequence[Stretch]:  # noqa: ARG002
+        """Those at another voltage than before; of a test that leaves the voltage alone, all."""
+        return evidence.departed_until(self.until)
+
+    def judge_stretch(self, requirement: DcRipple, evidence: Evidence, stretch: Stretch) -> Verdict:
+        """Judge the amplitude of the double-frequency component of v_DC in the stretch's window.
 
         A component over a window has no worst instant: the verdict points to where the window begins.
 
         Raises
         ------
         NotApplicable
-            When the sag is too short for a window.
+            When something moves in the stretch, or it is too short for a window.
         MeasurementError
             When v_DC cannot be measured in it.
         """
-        window = evidence.during()
+        window = evidence.window_of(stretch)
         inside = evidence.between(window.start_s, window.end_s)
         require_finite(evidence.dc_voltage_v[inside], "v_DC", evidence.t_s[inside])
         measured = required(window.dc_voltage_2f_percent, "the ripple of the DC voltage")

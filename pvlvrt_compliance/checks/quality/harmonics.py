@@ -7,7 +7,7 @@ import numpy as np
 from pvlvrt_compliance.checks.check import Check
 from pvlvrt_compliance.checks.parts import Part, judged_by_parts
 from pvlvrt_compliance.checks.quality.steady import SteadyWindow, steady_currents
-from pvlvrt_compliance.data.marks import Number
+from pvlvrt_compliance.data.marks import Marked, Number
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.measure.groups import harmonic_subgroups, spectrum, thd, trd
@@ -25,14 +25,15 @@ class HarmonicsCheck(Check):
     kind = KIND
     title = "Harmonic currents"
     requirement = Harmonics
+    judges_up_to_trip = True
 
     def judge(self, requirement: Harmonics, evidence: Evidence) -> Verdict:
         """Judge harmonic subgroups by order, TRD and THD of each phase, before the disturbance and at the end.
 
-        Over ten or twelve cycles each (IEC 61000-4-7). Orders and TRD are in percent of the rated current; TRD counts
-        interharmonics too. THD is that of the subgroups, orders 2 to 40, in percent of the fundamental's. Reports the
-        part with the least margin relative to its limit; a spectrum has no worst instant: the verdict points to where
-        its window begins.
+        Over ten or twelve cycles each (IEC 61000-4-7); after a trip only those before. Orders and TRD are in percent of
+        the rated current; TRD counts interharmonics too. THD is that of the subgroups, orders 2 to 40, in percent of
+        the fundamental's. Reports the part with the least margin relative to its limit; a spectrum has no worst
+        instant: the verdict points to where its window begins.
 
         Raises
         ------
@@ -63,11 +64,11 @@ def _parts(requirement: Harmonics, evidence: Evidence, window: SteadyWindow) -> 
 
 def _orders(limits: HarmonicLimits, subgroups: Samples, window: SteadyWindow) -> Iterator[Part]:
     for order in range(2, subgroups.shape[-1]):
-        limit_percent = limits.limit_of(order)
-        if limit_percent is not None:
+        row = limits.row_for(order)
+        if row is not None:
             phase = int(subgroups[:, order].argmax())
             what = f"harmonic {order} of the current in phase {'abc'[phase]}, of the rated current"
-            yield _part(what, subgroups[phase, order], limit_percent, window, limits)
+            yield _part(what, subgroups[phase, order], row.limit_percent, window, limits.mark_of(row))
 
 
 def _worst_phase(name: str, fractions: Samples, limit: Number, window: SteadyWindow) -> Part:
@@ -75,8 +76,6 @@ def _worst_phase(name: str, fractions: Samples, limit: Number, window: SteadyWin
     return _part(f"{name} in phase {'abc'[phase]}", fractions[phase], limit.value, window, limit)
 
 
-def _part(
-    what: str, fraction: float, limit_percent: float, window: SteadyWindow, rests_on: HarmonicLimits | Number
-) -> Part:
+def _part(what: str, fraction: float, limit_percent: float, window: SteadyWindow, rests_on: Marked) -> Part:
     when = f"over {window.start_s:.3f} s to {window.end_s:.3f} s"
     return Part(f"{what}, {when}", 100 * float(fraction), limit_percent, "%", window.start_s, (rests_on,))

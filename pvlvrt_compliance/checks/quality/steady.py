@@ -25,8 +25,9 @@ class SteadyWindow(NamedTuple):
 def steady_currents(evidence: Evidence) -> list[SteadyWindow]:
     """Windows that end with the one before the disturbance and, in a record long enough, with the one at its end.
 
-    They are counted in cycles of their own frequency from their end backwards: a window of 0.2 s holds eleven cycles
-    of 59.8 Hz and a part of the twelfth, and a disturbance may leave another frequency than it found.
+    After a trip the latter is not looked at. They are counted in cycles of their own frequency from their end
+    backwards: a window of 0.2 s holds eleven cycles of 59.8 Hz and a part of the twelfth, and a disturbance may leave
+    another frequency than it found.
 
     Raises
     ------
@@ -35,7 +36,12 @@ def steady_currents(evidence: Evidence) -> list[SteadyWindow]:
     """
     before, after = evidence.before(), evidence.measurements.after
     windows = [_last_cycles(evidence, before)]
-    return windows if after is None else [*windows, _last_cycles(evidence, after)]
+    return windows if after is None or _is_open(evidence) else [*windows, _last_cycles(evidence, after)]
+
+
+def _is_open(evidence: Evidence) -> bool:
+    """Whether the inverter has tripped by the end of the record: what flows then is not its own."""
+    return evidence.known_opening_s is not None
 
 
 def _last_cycles(evidence: Evidence, window: WindowMeasurements) -> SteadyWindow:

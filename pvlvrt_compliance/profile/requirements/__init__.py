@@ -17,8 +17,10 @@ from pvlvrt_compliance.profile.requirements.current import (
 )
 from pvlvrt_compliance.profile.requirements.power import (
     ActivePowerRecovery,
+    ActivePowerSupport,
     ConstantPower,
     Consumption,
+    Oscillation,
     OverfrequencyPower,
     ReturnToPrefault,
 )
@@ -28,6 +30,7 @@ from pvlvrt_compliance.profile.requirements.table import BUILT_IN, Kinds, Requir
 __all__ = [
     "BUILT_IN",
     "ActivePowerRecovery",
+    "ActivePowerSupport",
     "ConstantPower",
     "Consumption",
     "CurrentLimit",
@@ -37,6 +40,7 @@ __all__ = [
     "FrequencyRideThrough",
     "Harmonics",
     "Kinds",
+    "Oscillation",
     "OverfrequencyPower",
     "PhaseJumpRideThrough",
     "ReactiveCurrent",

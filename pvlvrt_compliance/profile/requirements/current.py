@@ -1,8 +1,8 @@
 """Currents: how large they may be, and what they must do for the voltage during a sag."""
 
-from typing import Literal
+from typing import Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from pvlvrt_compliance.data.marks import Choice, Flag, Fraction, NotNegative, Numbers, Positive
 from pvlvrt_compliance.profile.curves import RatioCurve, SupportCurve
@@ -13,14 +13,27 @@ Reference = Literal["prefault", "nominal"]
 
 
 class CurrentLimit(Requirement):
-    """Fundamental phase currents, once settled, and the instantaneous peak, always."""
+    """Fundamental phase currents, once settled, and the instantaneous peak, always.
+
+    With ``stage_pu`` the fundamental has a limit on its way to the settled one, too.
+    """
 
     kinds = ("current_limit",)
 
     limit_pu: Positive
     tolerance_pu: NotNegative
-    settling_s: NotNegative = Field(description="after the start and after clearing")
+    settling_s: NotNegative = Field(description="after each step of voltage, angle, frequency or strength of the grid")
     peak_pu: Positive
+    stage_pu: Positive | None = Field(default=None, description="limit of the fundamental before it is settled")
+    stage_from_cycles: Positive | None = Field(default=None, description="after each step, up to settling_s")
+
+    @model_validator(mode="after")
+    def _stage_whole(self) -> Self:
+        if (self.stage_pu is None) != (self.stage_from_cycles is None):
+            raise ValueError("stage_pu and stage_from_cycles go together")
+        if self.stage_from_cycles is not None and self.stage_from_cycles.value < 1:
+            raise ValueError("stage_from_cycles: must be 1 at least: until then a cycle reaches back before the step")
+        return self
 
     @property
     def allowed_pu(self) -> float:
@@ -64,9 +77,11 @@ class ReactiveCurrent(Requirement):
 class SupportDynamics(Requirement):
     """How fast the additional reactive current of the positive sequence comes and settles.
 
-    Activation: it has moved by ``activation_pu``. Response: it has reached ``response_fraction`` of its final value.
-    Both from the first V+ beyond the thresholds of detection; without those, from the start of the sag. Settling: from
-    activation to the last entry into the band around the final value.
+    Activation: it has moved by ``activation_pu``. Response: it has come ``response_fraction`` of the way to what is
+    due. Both from the first V+ beyond the thresholds of detection; without those, from the step of the voltage.
+    Settling: from activation to the last entry into a band, from ``band_minus`` below what is due to ``band_plus``
+    above the final value. Due is what reactive_current demands less what it forgives; in a profile without it, the
+    final value.
     """
 
     kinds = ("support_dynamics",)
@@ -77,8 +92,8 @@ class SupportDynamics(Requirement):
     response_s: Positive
     settling_s: Positive
     band_plus: Positive = Field(description="fraction of the final value")
-    band_minus: Positive = Field(description="fraction of the final value")
-    least_change_pu: Positive = Field(description="a final value below this is not timed")
+    band_minus: Positive = Field(description="fraction of what is due")
+    least_change_pu: Positive = Field(description="a change that is due by less is not timed")
 
 
 class ReactiveRatio(Requirement):
@@ -87,9 +102,9 @@ class ReactiveRatio(Requirement):
     kinds = ("reactive_ratio",)
 
     curve: RatioCurve
-    within_s: NotNegative = Field(description="from the start of the sag")
+    within_s: NotNegative = Field(description="from each step")
     tolerance: NotNegative
-    least_current_pu: Positive = Field(description="below this total current there is no share")
+    least_current_pu: Positive = Field(description="total current where a share is due, at most what flowed before")
 
 
 class Toggling(Requirement):

@@ -1,10 +1,29 @@
 """Active and reactive power during a sag and after it."""
 
-from pydantic import Field
+from typing import Self
+
+from pydantic import Field, model_validator
 
 from pvlvrt_compliance.data.marks import Fraction, Frozen, NotNegative, Positive
 from pvlvrt_compliance.profile.requirements.base import Requirement
 from pvlvrt_compliance.profile.tables import RecoveryTable
+
+
+class ActivePowerSupport(Requirement):
+    """Active power during a sag or a swell: what the reactive power leaves room for, eq (10), and can be had.
+
+    The least of P = sqrt(S_fault^2 - Q^2) with S_fault = (V+ - V-) S, eq (8), and Q by ``reactive_support`` of the
+    profile (none without it), where V+ and V- at the terminals are off by ``voltage_pu`` together; from its
+    ``no_support_from_pu`` on S_fault. At most the power before and what the array gives.
+    """
+
+    kinds = ("active_power_support",)
+
+    tolerance_fraction: NotNegative = Field(description="of rated power")
+    voltage_pu: NotNegative = Field(
+        description="by which V+ and V- together may be off: eq (10) is steep where Q = S_fault"
+    )
+    settling_s: NotNegative = Field(description="after each step of the grid, not looked at")
 
 
 class ActivePowerRecovery(Requirement):
@@ -54,13 +73,36 @@ class ConstantPower(Requirement):
     limit_fraction: Positive = Field(description="amplitude, of rated power")
 
 
+class Oscillation(Requirement):
+    """Slow swings of P and of Q in a grid that stands still: half-cycle means, which leave 2f and 6f out.
+
+    What only rises or only falls, as a recovery does, is no swing.
+    """
+
+    kinds = ("oscillation",)
+
+    limit_fraction: Positive = Field(
+        description="peak to peak of what goes to and fro, of rated power, a straight line taken away"
+    )
+    settling_s: NotNegative = Field(description="after each step of the grid, not looked at")
+    array_settling_s: NotNegative = Field(description="the same after a step of the irradiance")
+    least_cycles: Positive = Field(description="that a stretch must last from then on")
+
+
 class ReturnToPrefault(Requirement):
-    """Active and reactive power at the end of the record are those before the sag."""
+    """Active and reactive power at the end of the record are those before the sag; what is left out is not judged."""
 
     kinds = ("return_to_prefault",)
 
-    active_fraction: Positive = Field(description="of rated power")
-    reactive_fraction: Positive = Field(description="of rated power")
+    active_fraction: Positive | None = Field(default=None, description="of rated power")
+    reactive_fraction: Positive | None = Field(default=None, description="of rated power")
+    reactive_pu: Positive | None = Field(default=None, description="reactive power, times V+ S")
+
+    @model_validator(mode="after")
+    def _limits_something(self) -> Self:
+        if self.active_fraction is None and self.reactive_fraction is None and self.reactive_pu is None:
+            raise ValueError("active_fraction, reactive_fraction, reactive_pu: at least one must be given")
+        return self
 
 
 class OverfrequencyPower(Requirement):

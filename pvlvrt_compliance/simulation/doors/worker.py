@@ -43,6 +43,7 @@ class RunJob(DescribeJob):
     parameters: Parameters = field(kw_only=True)
     plan: RecordingPlan = field(kw_only=True)
     digest: str = field(kw_only=True)  # of the controller that was described
+    after_trip: bool = field(default=True, kw_only=True)  # whether it is called after a trip, too
 
 
 def main() -> None:
@@ -120,10 +121,10 @@ def _use(door: Door, job: DescribeJob, folder: Path) -> dict[str, Any]:
         raise SimulationError("the controller's file has changed since the first test; its verdicts would be mixed")
     with (folder / PROGRESS).open("r+b") as file:
         progress: Any = np.frombuffer(mmap.mmap(file.fileno(), 0), dtype=np.float64)
-    record = run_through(door, job.scenario, job.parameters, job.plan, progress)
+    record = run_through(door, job.scenario, job.parameters, job.plan, progress, after_trip=job.after_trip)
     try:
         np.save(folder / RECORD, record.samples)
     except OSError as error:
         (folder / RECORD).unlink()  # room for the answer
         raise SimulationError(f"{folder / RECORD} cannot be written: {error.strerror or error}") from None
-    return {"channels": record.channels, "notes": record.notes}
+    return {"channels": record.channels, "notes": record.notes, "tripped_at_s": record.tripped_at_s}

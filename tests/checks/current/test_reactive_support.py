@@ -50,9 +50,13 @@ def test_no_support_above_the_threshold(bench, q_kvar, status, sign):
 
 
 def test_support_without_any_voltage(bench):
-    """Where nothing of the voltage is left nothing is demanded, and rounding does not decide."""
-    check = bench(depth=1, duration_s=0.2).check("reactive_support")
-    assert (check.status, check.margin) == (Status.PASS, 0)
+    """Where the grid has no voltage nothing is demanded; where the inverter left none, doing nothing is no pass."""
+    settings = {"depth": 1, "duration_s": 0.2}
+    assert bench(**settings).check("reactive_support").status is Status.NOT_APPLICABLE
+    destroyed = bench(duration_s=0.2, sag=Sag(depth=1), no_load_sag=Sag(depth=0.5)).check("reactive_support")
+    assert destroyed.status is Status.FAIL
+    assert (destroyed.limit, destroyed.bound, destroyed.unit) == (0.01, "at_least", "pu")
+    assert "destroyed the voltage" in destroyed.message
 
 
 def test_demand_meets_capability_where_physics_says(iec):

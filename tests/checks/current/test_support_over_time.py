@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from pvlvrt_compliance.checks.api import judge_alone
+from pvlvrt_compliance.checks.current.reactive_ratio import ReactiveRatioCheck
 from pvlvrt_compliance.results import Status
 from pvlvrt_compliance.scenario.events import VoltageProfile
 from pvlvrt_compliance.scenario.sag import Sag
@@ -112,13 +114,13 @@ def test_small_change_is_not_timed(timed, size_pu, status):
 @pytest.mark.parametrize(
     ("settings", "reason"),
     [
-        ({"duration_s": 0.13}, "no whole cycle"),
+        ({"duration_s": 0.11}, "no whole cycle"),
         ({"depth": 0.1, "detection": DETECTION}, "threshold of detection"),
-        ({"q_before_kvar": 200.0, "current_pu": step(0, 0)}, "blocked"),
+        ({"asked": Sag(depth=0.95, phases="bc", two_phase=True), "current_pu": step(0, 0)}, "less than the 0.05 pu"),
     ],
 )
 def test_nothing_to_time(timed, settings, reason):
-    """Sags that are too short or no event, and a blocked bridge, have no response."""
+    """Sags that are too short or no event, and a bridge blocked where V+ is V- nearly, have no response."""
     check = timed(**({"current_pu": step(0)} | settings)).check("support_dynamics")
     assert check.status is Status.NOT_APPLICABLE
     assert reason in check.message
@@ -194,10 +196,45 @@ def test_share_must_last(sharing, over_s):
     assert check.at_s > 0.3 + over_s
 
 
-@pytest.mark.parametrize(("current_pu", "status"), [(0.049, Status.NOT_APPLICABLE), (0.051, Status.FAIL)])
-def test_hardly_any_current_has_no_share(sharing, current_pu, status):
-    """Below the least current there is no share."""
-    assert sharing(0.0, current_pu=current_pu).check("reactive_ratio").status is status
+@pytest.mark.parametrize(("current_pu", "status"), [(0.049, Status.FAIL), (0.051, Status.PASS)])
+def test_hardly_any_current_fails(sharing, current_pu, status):
+    """Where a share is due, less than the least current fails, however reactive it is: doing nothing is no pass."""
+    check = sharing(1.0, current_pu=current_pu).check("reactive_ratio")
+    assert check.status is status
+    if status is Status.FAIL:
+        assert (check.limit, check.unit, check.bound) == (0.05, "pu", "at_least")
+        assert check.measured == pytest.approx(current_pu)
+        assert check.margin == pytest.approx(current_pu - 0.05)
+
+
+@pytest.mark.parametrize(("current_pu", "status"), [(0.19, Status.FAIL), (0.21, Status.PASS)])
+def test_no_more_current_is_due_than_before(sharing, current_pu, status):
+    """With 0.2 pu of current before a shallow sag no more is due in it, however much the profile asks for at most."""
+    settings = {"depth": 0.2, "changed": {"least_current_pu": 0.3}, "p_before_kw": 100.0, "available_power_w": 100e3}
+    assert sharing(0.95, current_pu=current_pu, **settings).check("reactive_ratio").status is status
+
+
+@pytest.mark.parametrize(("depth", "status"), [(0.92, Status.NOT_APPLICABLE), (0.88, Status.FAIL)])
+def test_no_current_where_the_sequences_meet(sharing, depth, status):
+    """Where V+ and V- of the grid are nearly the same, eq (8) leaves no current, and none is due."""
+    sag = Sag(depth=depth, phases="bc", two_phase=True)
+    assert sharing(1.0, current_pu=0.0, asked=sag).check("reactive_ratio").status is status
+
+
+@pytest.mark.parametrize(("left_pu", "status"), [(0.0, Status.FAIL), (0.05, Status.PASS)])
+def test_a_voltage_that_the_inverter_destroys(sharing, left_pu, status):
+    """Nothing left at the terminals of a grid that has 0.5 pu fails."""
+    check = sharing(0.95, sag=Sag(depth=1 - left_pu), no_load_sag=Sag(depth=0.5)).check("reactive_ratio")
+    assert check.status is status
+    assert ("destroyed the voltage" in check.message) == (status is Status.FAIL)
+
+
+def test_without_the_grids_voltage_the_terminals_decide(sharing):
+    """Nobody knows who took the voltage away in a record of the terminals alone."""
+    made = sharing(0.95, sag=Sag(depth=1), no_load_sag=Sag(depth=0.5), without=("u0_a_v", "u0_b_v", "u0_c_v"))
+    requirement = made.profile.requirements.reactive_ratio
+    verdict = judge_alone(ReactiveRatioCheck, requirement, made.waveforms(), made.test.scenario)
+    assert verdict.status is Status.NOT_APPLICABLE
 
 
 def test_share_in_a_short_sag(sharing):

@@ -14,11 +14,13 @@ from edges.edge import Edge, Generator, Record
 from edges.frequency import frequency_ride_through, overfrequency_power
 from edges.power import (
     active_power_recovery,
+    active_power_support,
     constant_power,
     consumption,
     dc_injection,
     dc_ripple,
     harmonics,
+    oscillation,
     return_to_prefault,
 )
 
@@ -37,9 +39,11 @@ GENERATORS: dict[str, Generator] = {
         support_dynamics,
         reactive_ratio,
         toggling,
+        active_power_support,
         active_power_recovery,
         consumption,
         constant_power,
+        oscillation,
         return_to_prefault,
         overfrequency_power,
         dc_ripple,

@@ -40,6 +40,12 @@ LONG_S = 100.0
 LONG_STEP_S = 2 / 480
 """Distance in time of records longer than that: two samples of eight a cycle."""
 
+LONGEST_S = 3500.0
+"""No test may be asked to last longer than an hour: what is demanded for one has no side beyond it."""
+
+HARDLY_KW = 20.0
+"""Power that shows a working bridge, and nothing else."""
+
 AWAY_S = 2.0
 """How long a trip waits where time does not decide."""
 
@@ -55,11 +61,11 @@ def ride_through(demand: RideThrough, profile: Profile) -> Iterator[Edge]:
         if (envelope := getattr(demand, name)) is not None:
             yield from _envelope(name, envelope, side, tolerance)
     if demand.regions is not None:
-        yield from _regions(demand.regions, tolerance)
+        yield from _regions(demand.regions, tolerance, hz(profile))
     if demand.recovery_fraction is not None and demand.recovery_time_s is not None:
         names = ("recovery_fraction", "recovery_time_s")
         fraction, time_s = demand.recovery_fraction.value, demand.recovery_time_s.value
-        made = {"asked": Sag(depth=0.3), "duration_s": 0.3, "p_sag_kw": 100.0}
+        made = {"asked": Sag(depth=0.3), "duration_s": 0.3, "p_sag_kw": 0.7 * RATED_KVA}
         yield from recovery(names, fraction, time_s, 1 / hz(profile), _after_clearing, **made)
 
 
@@ -83,11 +89,11 @@ def recovery(
 
 
 def _after_clearing(at_s: float, level_kw: float) -> dict[str, Any]:
-    return {"p_after_kw": until(at_s, 0.0, level_kw)}
+    return {"p_after_kw": until(at_s, HARDLY_KW, level_kw)}
 
 
 def _after_jump(at_s: float, level_kw: float) -> dict[str, Any]:
-    lost = between(JUMP_S, JUMP_S + at_s, RATED_KVA)
+    lost = between(JUMP_S, JUMP_S + at_s, RATED_KVA - HARDLY_KW)
     short = until(JUMP_S, 0.0, RATED_KVA - level_kw)
     return {"p_kw": lambda t: RATED_KVA - np.maximum(lost(t), short(t))}
 
@@ -111,17 +117,17 @@ def _envelope(name: str, envelope: Envelope, side: Side, tolerance: float) -> It
     levels = sorted({u for _, u in envelope.points})
     for u in sorted({*levels, *(0.5 * (a + b) for a, b in pairwise(levels))}):
         time_s = envelope.time_of(u, side)
-        if time_s and sign * (levels[-1] - u if side is Side.LOW else levels[0] - u) > tolerance:
+        if time_s and time_s < LONGEST_S and sign * (levels[-1] - u if side is Side.LOW else levels[0] - u) > tolerance:
             # The record goes on until the envelope has passed the voltage by more than the tolerance.
             passed_s = (envelope.time_of(u + sign * tolerance, side) or 0.0) + 0.1
-            late = _trip(name, u, time_s + STEP_S, LET_OFF, passed_s)
+            late = _trip(name, u, time_s + STEP_S, PASS, passed_s)
             early = _trip(name, u, time_s - STEP_S, FAIL, passed_s)
             yield Edge(f"{name}: {u:g} pu for {time_s:g} s", (name,), late, early)
-    for at_s, level in _sharp_levels(envelope):
+    for at_s, level in (found for found in _sharp_levels(envelope) if found[0] < LONGEST_S):
         edge = level - sign * tolerance
         if edge > (0.5 if name == "envelope_two_phase" else U_PU):
             by = sign * U_PU
-            beyond, within = _trip(name, edge - by, at_s, LET_OFF), _trip(name, edge + by, at_s, FAIL)
+            beyond, within = _trip(name, edge - by, at_s, FREE), _trip(name, edge + by, at_s, FAIL)
             yield Edge(f"{name}: level {level:g} pu", (name, "envelope_tolerance_pu"), beyond, within)
 
 
@@ -134,13 +140,18 @@ def _sharp_levels(envelope: Envelope) -> Iterator[tuple[float, float]]:
             yield (0.05 if index == 0 else 0.5 * (from_s + to_s)), level
 
 
+def _as_before_kw(u_pu: float) -> float:
+    """Power of the current before, at a voltage of all phases: no least current is missed."""
+    return RATED_KVA * u_pu
+
+
 def _ceases(region: Region | None) -> bool:
     return region is not None and region.mode in CEASE
 
 
 def _in_region(region: Region | None, u_pu: float, trip_s: float, statuses: Statuses, **more: Any) -> Record:
     """A trip at a level; where a region wants no current none flows from the start."""
-    settings: dict[str, Any] = {"p_sag_kw": 50.0, "disconnected_after_s": trip_s} | more
+    settings: dict[str, Any] = {"p_sag_kw": _as_before_kw(u_pu), "disconnected_after_s": trip_s} | more
     if _ceases(region):
         settings["flows"] = lambda t: (t < 0.01) * 1.0
     duration_s = trip_s + 0.5
@@ -149,7 +160,7 @@ def _in_region(region: Region | None, u_pu: float, trip_s: float, statuses: Stat
     return record(statuses, duration_s=duration_s, scenario={"events": [held(u_pu, duration_s)]}, **settings)
 
 
-def _regions(table: RegionTable, tolerance: float) -> Iterator[Edge]:
+def _regions(table: RegionTable, tolerance: float, nominal_hz: float) -> Iterator[Edge]:
     numbers = ("regions", "envelope_tolerance_pu")
     for row in table.rows:
         low, high = row.voltage_pu
@@ -170,7 +181,12 @@ def _regions(table: RegionTable, tolerance: float) -> Iterator[Edge]:
         if (row.respond_s is not None and row.voltage_pu[1] < 2) or row.mode in CEASE:
             yield _response(row, min(middle, 1.9))
         if row.mode == "mandatory":
-            yield _pause(middle)
+            yield _pause(table, middle)
+            if table.least_current_fraction is not None:
+                yield _least(table.least_current_fraction.value, middle)
+                if table.least_current_settling_s is not None:
+                    share, settling_s = table.least_current_fraction.value, table.least_current_settling_s.value
+                    yield _least_settled(share, settling_s, 1 / nominal_hz, middle)
     for lower, upper in pairwise(table.rows):
         yield from _border(table, lower, upper, tolerance, numbers)
     if table.cumulative_window_s is not None:
@@ -198,12 +214,19 @@ def _response(row: Region, u_pu: float) -> Edge:
 
 def _pausing(statuses: Statuses, u_pu: float, pause_s: float, lasts_s: float = 0.2) -> Record:
     flows = lambda t: 1.0 - ((t > 0.1) & (t < 0.1 + pause_s))  # noqa: E731
-    return record(statuses, duration_s=lasts_s, scenario={"events": [held(u_pu, lasts_s)]}, p_sag_kw=100.0, flows=flows)
+    return record(
+        statuses,
+        duration_s=lasts_s,
+        scenario={"events": [held(u_pu, lasts_s)]},
+        p_sag_kw=_as_before_kw(u_pu),
+        flows=flows,
+    )
 
 
-def _pause(u_pu: float) -> Edge:
-    """Current away for a little less and a little more than a cycle (60 Hz)."""
-    only = {"recovery_fraction": None, "recovery_time_s": None}
+def _pause(table: RegionTable, u_pu: float) -> Edge:
+    """Current away for a little less and a little more than a cycle (60 Hz), where no share of it has to flow."""
+    any_current = table.model_copy(update={"least_current_fraction": None, "least_current_of": None})
+    only = {"recovery_fraction": None, "recovery_time_s": None, "regions": any_current}
     cycle_s = 1 / 60
     return Edge(
         f"pause at {u_pu:g} pu",
@@ -212,6 +235,32 @@ def _pause(u_pu: float) -> Edge:
         _pausing(FAIL, u_pu, cycle_s + STEP_S),
         only,
     )
+
+
+def _least(fraction: float, u_pu: float) -> Edge:
+    """Balanced current a little above and a little below the share of the current before."""
+
+    def feeding(statuses: Statuses, share: float) -> Record:
+        power = share * _as_before_kw(u_pu)
+        return record(statuses, duration_s=0.3, scenario={"events": [held(u_pu, 0.3)]}, p_sag_kw=power)
+
+    label, numbers = f"least current at {u_pu:g} pu", ("regions.least_current_fraction",)
+    only = {"recovery_fraction": None, "recovery_time_s": None}
+    return Edge(label, numbers, feeding(PASS, fraction + 0.005), feeding(FAIL, fraction - 0.005), only)
+
+
+def _least_settled(fraction: float, settling_s: float, cycle_s: float, u_pu: float) -> Edge:
+    """A current that comes on just before and just after a share of it is demanded: its amplitude rises in a cycle."""
+
+    def coming(statuses: Statuses, at_s: float) -> Record:
+        power = until(at_s, 0.1 * _as_before_kw(u_pu), _as_before_kw(u_pu))
+        return record(statuses, duration_s=0.3, scenario={"events": [held(u_pu, 0.3)]}, p_sag_kw=power)
+
+    label, numbers = f"least current settled at {u_pu:g} pu", ("regions.least_current_settling_s",)
+    only = {"recovery_fraction": None, "recovery_time_s": None}
+    latest_s = settling_s - cycle_s * (fraction - 0.1) / 0.9
+    uneven_s = 0.2 * cycle_s  # in part of a cycle the largest of three phases lies up to a sixth above their mean
+    return Edge(label, numbers, coming(PASS, latest_s - STEP_S), coming(FAIL, latest_s + uneven_s), only)
 
 
 def _border(
@@ -252,10 +301,12 @@ def _cumulative(table: RegionTable, window_s: float) -> Iterator[Edge]:
         points = [*held(u, first_s)["points"], *held(u, ride_s, second_s)["points"]]
         scenario = {"events": [{"kind": "voltage_profile", "points": points}], "after_s": 0.6}
         trip_s = second_s + 0.5 * ride_s
-        return record(statuses, NO_SAG, second_s + ride_s, scenario, p_sag_kw=100.0, disconnected_after_s=trip_s)
+        return record(
+            statuses, NO_SAG, second_s + ride_s, scenario, p_sag_kw=_as_before_kw(u), disconnected_after_s=trip_s
+        )
 
     by_s = 2 * SHORT_STEP_S
-    yield Edge("times that add up", ("regions",), twice(LET_OFF, latest_s - by_s), twice(FAIL, latest_s + by_s))
+    yield Edge("times that add up", ("regions",), twice(PASS, latest_s - by_s), twice(FAIL, latest_s + by_s))
 
 
 def phase_jump_ride_through(demand: PhaseJumpRideThrough, profile: Profile) -> Iterator[Edge]:

@@ -42,6 +42,9 @@ SHARE = 1e-3
 LEVEL_PU = 1e-3
 """Distance in voltage."""
 
+SIDES = ((PASS, 1 - SHARE), (FAIL, 1 + SHARE))
+"""Factors on a limit."""
+
 
 def current_limit(demand: CurrentLimit, profile: Profile) -> Iterator[Edge]:
     """The settled fundamental in the sag and after it, the peak, and the time to settle."""
@@ -49,15 +52,16 @@ def current_limit(demand: CurrentLimit, profile: Profile) -> Iterator[Edge]:
     size = ("limit_pu", "tolerance_pu")
     sides = ((PASS, allowed * (1 - SHARE)), (FAIL, allowed * (1 + SHARE)))
     yield Edge("in the sag", size, *(record(s, Sag(depth=0.5), q_sag_kvar=kvar(x, 0.5)) for s, x in sides))
-    yield Edge("after it", size, *(record(s, p_sag_kw=400.0, p_after_kw=RATED_KVA * x) for s, x in sides))
+    yield Edge("after it", size, *(record(s, _SLIGHT, p_sag_kw=400.0, p_after_kw=RATED_KVA * x) for s, x in sides))
     cycle_s, settling_s = 1 / hz(profile), demand.settling_s.value
     for start_s in (0.0, 0.3):
         # A tenth too much until one cycle before the end of the settling, and a part of that cycle.
         part_s = cycle_s * 2 * demand.tolerance_pu.value / 0.1 / demand.limit_pu.value
         stops = [(PASS, settling_s - cycle_s - STEP_S), (FAIL, settling_s - cycle_s + part_s)]
         surges = ((s, between(start_s, start_s + stop, 0.1)) for s, stop in stops)
-        settled = (record(s, duration_s=0.3, p_kw=_surging(surge, demand.limit_pu.value)) for s, surge in surges)
+        settled = (record(s, _SLIGHT, p_kw=_surging(surge, demand.limit_pu.value)) for s, surge in surges)
         yield Edge(f"settling from {start_s:g} s", ("settling_s",), *settled)
+    yield from _stages(demand, profile)
     peak = demand.peak_pu.value
     for phase in range(3):
         # The bench feeds nothing in the sag, so that the peak is that of the pulse alone.
@@ -65,12 +69,38 @@ def current_limit(demand: CurrentLimit, profile: Profile) -> Iterator[Edge]:
         yield Edge(
             f"peak in phase {'abc'[phase]}",
             ("peak_pu",),
-            *(record(s, Sag(depth=0.5), extra_current_pu=x) for s, x in pulses),
+            *(record(s, Sag(depth=0.5), extra_current_pu=x, p_sag_kw=0.0) for s, x in pulses),
         )
 
 
+_SLIGHT = Sag(depth=0.02)
+"""A step of the voltage that leaves it normal."""
+
+
+def _stages(demand: CurrentLimit, profile: Profile) -> Iterator[Edge]:
+    """The limit before the current is settled, and from when on it counts."""
+    if demand.stage_pu is None or demand.stage_from_cycles is None:
+        return
+    cycle_s, limit, stage = 1 / hz(profile), demand.limit_pu.value, demand.stage_pu.value
+    lasts_s = demand.settling_s.value - cycle_s - STEP_S
+    for start_s in (0.0, 0.3):
+        sizes = ((s, between(start_s, start_s + lasts_s, stage * by - limit)) for s, by in SIDES)
+        edge = (record(s, _SLIGHT, p_kw=_surging(surge, limit)) for s, surge in sizes)
+        yield Edge(f"unsettled from {start_s:g} s", ("stage_pu",), *edge)
+        # Twice what is allowed: of a cycle that ends when the limit begins to count, half may still be so. What two
+        # samples more or less do to a phase differs by its angle; hence the little less.
+        until_s = start_s + (demand.stage_from_cycles.value - 1 + 0.5) * cycle_s
+        twice = 2 * (stage - limit)
+        times = ((PASS, -STEP_S, 0.98 * twice), (FAIL, STEP_S, twice))
+        surges = ((s, between(start_s, until_s + d, x)) for s, d, x in times)
+        edge = (record(s, _SLIGHT, p_kw=_surging(surge, limit)) for s, surge in surges)
+        yield Edge(f"unsettled, time from {start_s:g} s", ("stage_from_cycles",), *edge)
+
+
 def _surging(surge: Any, limit_pu: float) -> Any:
-    return lambda t: RATED_KVA * np.where(t < 0, 1.0, limit_pu + surge(t))
+    """Active power of a current at its limit from the start of a slight sag on, and what comes on top of it."""
+    u = lambda t: np.where((t >= 0) & (t < 0.3), 1 - _SLIGHT.depth, 1.0)  # noqa: E731
+    return lambda t: RATED_KVA * u(t) * np.where(t < 0, 1.0, limit_pu + surge(t))
 
 
 def _pulse(phase: int, size_pu: float) -> Any:
@@ -78,7 +108,7 @@ def _pulse(phase: int, size_pu: float) -> Any:
 
     def current(t: np.ndarray) -> np.ndarray:
         extra = np.zeros((3, len(t)))
-        at = len(t) // 4
+        at = int(np.searchsorted(t, 0.425))  # in the sag
         extra[phase, at : at + 2] = -size_pu, size_pu
         return extra
 
@@ -230,13 +260,15 @@ def negative_sequence_current(demand: ReactiveCurrent, profile: Profile) -> Iter
     yield Edge("dead band", ("dead_band_pu", "dead_band_mode"), *(made(s, v, little) for s, v in sides))
     low = demand.blocking_allowed_below_pu.value
     sides = ((LET_OFF, low - LEVEL_PU), (FAIL, low + LEVEL_PU))
-    yield Edge("blocking", ("blocking_allowed_below_pu",), *(_blocked(s, v) for s, v in sides))
+    # With the dead band of the profile nothing is due where V+ and V- differ by enough for a current.
+    only = {"dead_band_pu": 0.05}
+    yield Edge("blocking", ("blocking_allowed_below_pu",), *(_blocked(s, v) for s, v in sides), only)
 
 
 def _blocked(statuses: Statuses, v_positive: float) -> Record:
     """Current away through an isolated two-phase sag that a voltage profile brings down to a V+."""
-    sag = two_phase(0.45)
-    factor = v_positive / 0.55
+    sag = two_phase(0.3)
+    factor = v_positive / 0.7
     scenario = {"events": [held(factor, 0.3)]}
     return record(statuses, sag, 0.3, scenario, flows=lambda t: 1.0 - ((t >= 0) & (t < 0.3)))
 
@@ -309,8 +341,8 @@ def reactive_ratio(demand: ReactiveRatio, profile: Profile) -> Iterator[Edge]:
     latest_s = within_s - part * cycle_s
     yield Edge("time", ("within_s",), *(sharing(s, 0.3, until(latest_s + d, 0.0, 1.0)) for s, d in late))
     least = demand.least_current_pu.value
-    sides = ((LET_OFF, least - SHARE), (FAIL, least + SHARE))
-    yield Edge("least current", ("least_current_pu",), *(sharing(s, 0.3, constant(0.0), i) for s, i in sides))
+    sides = ((PASS, least + SHARE), (FAIL, least - SHARE))
+    yield Edge("least current", ("least_current_pu",), *(sharing(s, 0.3, constant(1.0), i) for s, i in sides))
 
 
 def toggling(demand: Toggling, profile: Profile) -> Iterator[Edge]:

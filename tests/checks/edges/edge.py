@@ -55,6 +55,29 @@ class Edge(NamedTuple):
     further: Record | None = None  # another one just outside, in another direction
 
 
+FIRST = Sag(depth=0.5)
+"""A sag that comes before the one of an edge, and what is right in it: nominal reactive current and nothing else."""
+
+FIRST_S, LATER_S = 0.3, 0.6
+"""Its length, and when the other one begins (s)."""
+
+
+def in_a_second_stretch(made: Record, profile: Profile) -> Record:
+    """The same record after a first sag that nothing is wrong in; who was let off has then passed."""
+    after_s = made.scenario.get("after_s", profile.procedure.after_s.value)
+    second = {"kind": "sag", "t_s": LATER_S, "duration_s": made.duration_s, "sag": made.asked.model_dump()}
+    events = [second, *(_later(event) for event in made.scenario.get("events", ()))]
+    scenario = made.scenario | {"events": events, "after_s": LATER_S + made.duration_s - FIRST_S + after_s}
+    settings = {"later_s": LATER_S, "later_duration_s": made.duration_s, "first_q_kvar": RATED_KVA * (1 - FIRST.depth)}
+    statuses = made.statuses | PASS if made.statuses == LET_OFF else made.statuses
+    return Record(statuses, FIRST, FIRST_S, scenario, made.settings | settings)
+
+
+def _later(event: dict[str, Any]) -> dict[str, Any]:
+    """An event of a voltage, after the first sag."""
+    return event | {"points": [(t + LATER_S, u) for t, u in event["points"]]}
+
+
 Generator = Callable[[Any, Profile], Iterator[Edge]]
 """Makes the edges of a requirement (of its own class) in its profile."""
 

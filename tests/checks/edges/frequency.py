@@ -29,7 +29,7 @@ def frequency_ride_through(demand: FrequencyRideThrough, profile: Profile) -> It
             near_hz = row.frequency_hz[1 if low else 0] + (-ACCURACY_HZ if low else ACCURACY_HZ)
             in_band_hz, on_edge_hz = near_hz + (-F_HZ if low else F_HZ), near_hz + (F_HZ if low else -F_HZ)
             late_s = row.ride_s + 2.1 / nominal_hz + _step_s(row.ride_s, nominal_hz)
-            freed = _step(LET_OFF, in_band_hz, late_s, nominal_hz)
+            freed = _step(PASS, in_band_hz, late_s, nominal_hz)
             early_s = row.ride_s - _step_s(row.ride_s, nominal_hz)
             label = f"{row.frequency_hz[0]:g} to {row.frequency_hz[1]:g} Hz"
             early = _step(FAIL, in_band_hz, early_s, nominal_hz)

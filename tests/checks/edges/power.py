@@ -9,6 +9,7 @@ import numpy as np
 from edges.edge import (
     FAIL,
     LET_OFF,
+    NO_SAG,
     PASS,
     RATED_KVA,
     STEP_S,
@@ -24,11 +25,13 @@ from edges.edge import (
 from pvlvrt_compliance.profile import Profile
 from pvlvrt_compliance.profile.requirements import (
     ActivePowerRecovery,
+    ActivePowerSupport,
     ConstantPower,
     Consumption,
     DcInjection,
     DcRipple,
     Harmonics,
+    Oscillation,
     ReturnToPrefault,
 )
 from pvlvrt_compliance.profile.requirements.power import ConsumptionZones
@@ -43,6 +46,57 @@ FINE_STEP_S = 2 * 40.9568e-6
 
 LEVEL_PU = 1e-3
 """Distance in voltage."""
+
+
+SWING_HZ = 10.0
+"""Swings of the records: a half-cycle mean hardly lowers them, and whole periods lie in the stretches."""
+
+
+def active_power_support(demand: ActivePowerSupport, profile: Profile) -> Iterator[Edge]:
+    """Eq (10) by hand at 0.70 pu, for V+ that is off, and from when on it is due."""
+    cycle_s = 1 / hz(profile)
+    low = 0.70 - demand.voltage_pu.value
+    curve_pu = 0.75 * (0.85 - low) / 0.35
+    due_kw = RATED_KVA * math.sqrt(low**2 - curve_pu**2)
+    tolerance_kw, settling_s = demand.tolerance_fraction.value * RATED_KVA, demand.settling_s.value
+    made = (record(s, Sag(depth=0.3), p_sag_kw=due_kw - tolerance_kw + d) for s, d in ((PASS, 0.1), (FAIL, -0.1)))
+    yield Edge("eq (10)", ("tolerance_fraction", "voltage_pu"), *made)
+    # Nothing until so late that the mean of a cycle is back at what is due as it begins to count.
+    come_s = settling_s - (1 - tolerance_kw / due_kw) * cycle_s
+    sides = ((PASS, come_s - STEP_S), (FAIL, come_s + STEP_S))
+    made = (record(s, Sag(depth=0.3), p_sag_kw=until(t, 0.0, due_kw)) for s, t in sides)
+    yield Edge("from when it is due", ("settling_s",), *made)
+
+
+def oscillation(demand: Oscillation, profile: Profile) -> Iterator[Edge]:
+    """The swing of P and of Q, from when on it counts after either kind of step, and in how short a stretch."""
+    cycle_s, settling_s = 1 / hz(profile), demand.settling_s.value
+    limit = demand.limit_fraction.value * RATED_KVA
+    half = math.pi * SWING_HZ * cycle_s / 2
+    amplitude = 0.5 * limit / (math.sin(half) / half)
+
+    def swing(times: float) -> Any:
+        """Cosine whose mean of half a cycle, a quarter of one late, begins at its peak: its line is level."""
+        return lambda t: times * amplitude * np.cos(2 * np.pi * SWING_HZ * (t - settling_s + 0.25 * cycle_s))
+
+    for key in ("p_sag_kw", "q_sag_kvar"):
+        sides = ((PASS, 1 - SHARE), (FAIL, 1 + SHARE))
+        made = (record(s, Sag(depth=0.5), settling_s + 0.5, **{key: swing(x)}) for s, x in sides)
+        yield Edge(f"swing of {key[0]}", ("limit_fraction",), *made)
+    darker = {"events": [{"kind": "irradiance", "t_s": 0, "to_w_m2": 900}]}
+    for name, sag, scenario in (("settling_s", Sag(depth=0.5), None), ("array_settling_s", NO_SAG, darker)):
+        # A pulse of one cycle that the mean of half a cycle has left behind as it begins to count, or not.
+        after_s = getattr(demand, name).value
+        sides = ((PASS, after_s - 1.5 * cycle_s - STEP_S), (FAIL, after_s - STEP_S))
+        made = (
+            record(s, sag, 0.6, scenario, p_sag_kw=between(t, t + cycle_s, 3 * limit), p_after_kw=0.0) for s, t in sides
+        )
+        yield Edge(name, (name,), *made)
+    lasts_s = settling_s + demand.least_cycles.value * cycle_s
+    fast = lambda t: 4 * limit * np.cos(2 * np.pi * 0.6 / cycle_s * t)  # noqa: E731
+    sides = ((PASS, lasts_s - STEP_S), (FAIL, lasts_s + STEP_S))  # the stretch that follows passes
+    made = (record(s, Sag(depth=0.5), d, p_sag_kw=fast) for s, d in sides)
+    yield Edge("shortest stretch", ("least_cycles",), *made)
 
 
 def active_power_recovery(demand: ActivePowerRecovery, profile: Profile) -> Iterator[Edge]:
@@ -83,7 +137,8 @@ def active_power_recovery(demand: ActivePowerRecovery, profile: Profile) -> Iter
             sides = [(LET_OFF, level + LEVEL_PU), (FAIL, level - LEVEL_PU)]
             back: Any = 0.5 * RATED_KVA
         else:
-            sides = [(PASS, level - LEVEL_PU), (FAIL, level + LEVEL_PU)]
+            on_it_pu = level - profile.thresholds.voltage_tolerance_pu.value  # nearer to it is the upper row's
+            sides = [(PASS, on_it_pu - LEVEL_PU), (FAIL, on_it_pu + LEVEL_PU)]
             back = until(0.5 * (lower.first_s + upper.first_s), 0.0, RATED_KVA)
         yield Edge(f"depth to {level:g} pu", ("rows",), *(made(s, u, back) for s, u in sides))
 
@@ -187,8 +242,14 @@ def dc_ripple(demand: DcRipple, profile: Profile) -> Iterator[Edge]:
 def return_to_prefault(demand: ReturnToPrefault, profile: Profile) -> Iterator[Edge]:
     """P and Q at the end, above and below what they were."""
     assert profile
-    for name, key, before in (("active_fraction", "p_after_kw", RATED_KVA), ("reactive_fraction", "q_after_kvar", 0.0)):
-        limit_kva = RATED_KVA * getattr(demand, name).value
+    for name, key, before in (
+        ("active_fraction", "p_after_kw", RATED_KVA),
+        ("reactive_fraction", "q_after_kvar", 0.0),
+        ("reactive_pu", "q_after_kvar", 0.0),
+    ):
+        if (number := getattr(demand, name)) is None:
+            continue
+        limit_kva = RATED_KVA * number.value  # V+ is 1 pu
         for sign in (-1, 1):
             sides = ((PASS, limit_kva * (1 - SHARE)), (FAIL, limit_kva * (1 + SHARE)))
             yield Edge(

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from edges import GENERATORS, Edge, Record
-from edges.edge import SHORT_STEP_S, hz
+from edges.edge import LATER_S, SHORT_STEP_S, hz, in_a_second_stretch
 from pvlvrt_compliance.checks.connection.repeated_runs import KIND, RepeatedRunsCheck
 from pvlvrt_compliance.checks.registry import judges_connection
 from pvlvrt_compliance.data.marks import marks_in
@@ -15,6 +15,9 @@ from pvlvrt_compliance.profile import Profile, known_profiles, load_profile
 from pvlvrt_compliance.profile.requirements import Requirement
 from pvlvrt_compliance.results import Status, TestResult, Verdict
 from pvlvrt_compliance.units import Nominal
+
+BESIDES = {"negative_sequence_current": "reactive_current", "active_power_support": "reactive_support"}
+"""Kinds whose checks look at another requirement."""
 
 ON_DETECTION = {"reactive_current", "negative_sequence_current", "support_dynamics"}
 """Kinds that depend on the thresholds of detection."""
@@ -29,6 +32,17 @@ WITHOUT_A_SIDE = {
 WITHOUT_ENVELOPE = {"envelope_tolerance_pu"}
 """Numbers of ride-through that do nothing in a profile that has neither envelope nor regions."""
 
+
+IN_EACH_STRETCH = {
+    "current_limit",
+    "reactive_support",
+    "reactive_current",
+    "negative_sequence_current",
+    "support_dynamics",
+    "reactive_ratio",
+    "toggling",
+}
+"""Kinds whose limits hold in a second sag as in the first."""
 
 LONG_S = 600.0
 """A record that lasts longer takes seconds to be made and judged (s)."""
@@ -73,8 +87,8 @@ def judging(case: Case) -> Profile:
     """
     demand = changed(getattr(case.profile.requirements, case.kind), case.edge)
     others = {}
-    if case.kind == "negative_sequence_current" and not case.edge.alone:
-        others["reactive_current"] = case.profile.requirements.reactive_current
+    if (other := BESIDES.get(case.kind)) and not case.edge.alone:
+        others[other] = getattr(case.profile.requirements, other)
     requirements = type(case.profile.requirements)(**(others | {case.kind: demand}))
     wide = case.profile.conditions.no_load_tolerance_pu.model_copy(update={"value": 0.05})
     conditions = case.profile.conditions.model_copy(update={"no_load_tolerance_pu": wide})
@@ -137,6 +151,27 @@ def test_edge(judge, case, made):
     assert check.status in made.statuses, f"{check.status}: {check.message}"
 
 
+@pytest.mark.parametrize(("case", "made"), [param for param in records() if param.values[0].kind in IN_EACH_STRETCH])
+def test_edge_in_a_second_stretch(judge, case, made):
+    """After a sag that nothing is wrong in, the same record is judged the same; a failure lies in the second one."""
+    second = in_a_second_stretch(made, case.profile)
+    check = judge(case, second)
+    assert check.status in second.statuses, f"{check.status}: {check.message}"
+    if check.status is Status.FAIL:
+        assert check.at_s >= case.profile.procedure.before_s.value + LATER_S - 1e-6
+        assert check.stretch
+        assert check.bound is not None
+        assert recomputed(check) == pytest.approx(check.margin, abs=1e-6)
+
+
+def recomputed(check: Verdict) -> float:
+    """Margin as anyone finds it from the other numbers of a verdict."""
+    if check.bound == "at_least":
+        return check.measured - (check.limit - check.tolerance)
+    measured = abs(check.measured) if check.bound == "band" else check.measured
+    return check.limit + check.tolerance - measured
+
+
 def test_every_number_has_an_edge():
     """Each marked number of each requirement decides an edge, or stands in the list of those that cannot."""
     missing = []
@@ -144,7 +179,9 @@ def test_every_number_has_an_edge():
         if kind == KIND:
             continue
         exercised = {name for edge in GENERATORS[kind](demand, profile) for name in edge.numbers}
-        named = {name for name, _ in marks_in(demand)}
+        named = {
+            name for name, _ in marks_in(demand) if not name.endswith("]")
+        }  # a row's mark is of its table's numbers
         idle = {name for name in named if (kind, name) in WITHOUT_A_SIDE}
         if kind == "ride_through" and not named & {"envelope", "regions"}:
             idle |= WITHOUT_ENVELOPE

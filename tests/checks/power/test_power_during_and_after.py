@@ -108,6 +108,13 @@ def test_shallow_sag_has_no_row(recovering):
     assert recovering(0.0, depth=0.14).check("active_power_recovery").status is Status.NOT_APPLICABLE
 
 
+@pytest.mark.parametrize("off_pu", [-1e-5, 0.0, 1e-5])
+def test_depth_on_the_edge_of_two_rows(recovering, off_pu):
+    """A sag to the edge of two rows is one of the row that begins there, whichever way its voltage is rounded."""
+    made = recovering(lambda t: 500.0 * (t > 0.19), depth=0.5 + off_pu)
+    assert made.check("active_power_recovery").limit == pytest.approx(0.2)
+
+
 @pytest.mark.parametrize(("depth", "limit_s"), [(0.45, 0.2), (0.55, 0.4)])
 def test_depth_of_a_sag_without_a_window(recovering, depth, limit_s):
     """Of a sag of two cycles the lowest V+ over a cycle is its depth."""

@@ -1,6 +1,7 @@
 """FMUs as controllers: the same waveforms as by the other doors, and what is refused, with the reason."""
 
 import json
+import re
 import sys
 import tempfile
 from pathlib import Path
@@ -24,6 +25,11 @@ pytestmark = pytest.mark.compiler
 FOLDER = Path(__file__).parent
 SAME_START = ("simulation.settling_s=0.5", "simulation.synchronising_s=0")
 QUICK = parameters_from(("simulation.settling_s=0.02", "simulation.synchronising_s=0.01"))
+NO_RELAYS = parameters_from(
+    ("simulation.settling_s=0.02", "simulation.synchronising_s=0.01", "protection.overcurrent_pu=100")
+)
+"""Nothing trips: a controller that goes on with what modulates loses its plant, and what it does wrong counts."""
+
 SHORT = Scenario(sag=Sag(depth=0.0), duration_s=0.1, after_s=0.1)
 PORTS_3 = (("inputs", "m_in"), ("outputs", "m_out"))
 MAPPING_3 = "".join(
@@ -102,7 +108,19 @@ def test_failing_step(small, version, status, reason):
     """A step that fails, or asks for the end, is an error with the simulated time and what the FMU has logged."""
     given = {"fail_at_s": 0.1, "status": status}
     with pytest.raises(SimulationError, match=f"(?s)at 0.07.*{reason}.*limit 42 reached by the link"):
-        ForeignSimulator(str(small(version)), given)(SHORT, QUICK)
+        ForeignSimulator(str(small(version)), given)(SHORT, NO_RELAYS)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize(("status", "reason"), [(3, "DoStep gave error"), (4, "DoStep gave fatal error")])
+def test_failing_step_after_a_trip(small, version, status, reason):
+    """After a trip it is a note, with the time and what the FMU has logged; the record goes on, the breaker open."""
+    simulator = ForeignSimulator(str(small(version)), {"fail_at_s": 0.1, "status": status})
+    record = simulator(SHORT, QUICK)
+    assert record.end_s == pytest.approx(SHORT.end_s, abs=1e-4)
+    assert record.segments[0]["connected"][-1] == 0
+    (note,) = simulator.notes
+    assert re.match(rf"(?s)ignored, as it came after a trip: .*at 0.07.*{reason}.*limit 42 reached by the link", note)
 
 
 @pytest.mark.parametrize("version", [2, 3])
@@ -117,7 +135,7 @@ def test_warning(small, version):
 def test_pending_step(small):
     """An FMU that computes asynchronously is refused at its first such step."""
     with pytest.raises(SimulationError, match="asynchronously"):
-        ForeignSimulator(str(small(2)), {"fail_at_s": 0.1, "status": 5, "softly": True})(SHORT, QUICK)
+        ForeignSimulator(str(small(2)), {"fail_at_s": 0.1, "status": 5, "softly": True})(SHORT, NO_RELAYS)
 
 
 def test_nothing_is_left(small, tmp_path, monkeypatch):
@@ -125,7 +143,7 @@ def test_nothing_is_left(small, tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     ForeignSimulator(str(small(2)))(SHORT, QUICK)
     with pytest.raises(SimulationError):
-        ForeignSimulator(str(small(2)), {"fail_at_s": 0.1, "status": 4})(SHORT, QUICK)
+        ForeignSimulator(str(small(2)), {"fail_at_s": 0.1, "status": 4})(SHORT, NO_RELAYS)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 
+from pvlvrt_compliance.scenario.events import FrequencyRamp
 from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.loop import CHANNELS, PLANT_CHANNELS
 from pvlvrt_compliance.simulation.simulate import simulate
+from pvlvrt_compliance.waveforms.trip_causes import in_words
 
 SAME_START = ("simulation.settling_s=0.5", "simulation.synchronising_s=0")
 BOTH_KNOW = (*PLANT_CHANNELS, "m_alpha", "m_beta", "v_fault_pu", "q_ref_var", "p_ref_w")
@@ -107,3 +109,46 @@ def test_long_record_is_thin_where_nothing_happens(opened):
     steps = {round(segment.dt_s / waveforms.segments[-1].dt_s) for segment in waveforms}
     assert len(waveforms.segments) > 1
     assert len(steps) == 2
+
+
+FALLING = (FrequencyRamp(t_s=0.0, rate_hz_s=-1.0, duration_s=1.0),)
+
+
+@pytest.mark.parametrize(
+    ("settings", "fields", "cause"),
+    [
+        (("protection.overcurrent_pu=0.9",), {"sag": Sag(depth=0.9)}, "over-current relay of the plant"),
+        (("protection.dc_overvoltage_v=980",), {"sag": Sag(depth=0.9)}, "DC over-voltage relay of the plant"),
+        ((), {"sag": Sag(depth=0.97), "duration_s": 0.6}, "under-voltage relay of the plant"),
+        (
+            ("protection.frequency_min_hz=49.5",),
+            {"sag": Sag(depth=0.0), "duration_s": 1.0, "events": FALLING},
+            "frequency relay of the plant",
+        ),
+    ],
+)
+def test_each_relay_is_named_with_a_controller_from_outside(opened, settings, fields, cause):
+    """The record holds the code of the relay that tripped, whoever controls, and the instant of it beside."""
+    scenario = Scenario.model_validate({"duration_s": 0.1, "after_s": 0.1, **fields})
+    record = opened("misbehaving.py:Controller")(scenario, parameters_from(settings))
+    codes = np.concatenate([segment["trip_cause"] for segment in record])
+    assert codes[0] == 0
+    assert in_words(int(codes.max())) == cause
+    first_s = np.concatenate([segment.t_s for segment in record])[codes.argmax()]
+    assert record.tripped_at_s == pytest.approx(first_s, abs=2 * record.segments[0].dt_s)
+
+
+def test_settling_can_be_recorded(opened):
+    """It stands before the record, on its grid, up to the controller's first command; the record stays the same."""
+    scenario = Scenario(sag=Sag(depth=0.5), duration_s=0.1, after_s=0.1)
+    simulator = opened("misbehaving.py:Controller")
+    usual, longer = (
+        simulator(scenario, parameters_from(("simulation.settling_s=0.3", *more)))
+        for more in ((), ("simulation.record_settling=true",))
+    )
+    (before,) = longer.settling
+    assert usual.settling == ()
+    assert before.t0_s == pytest.approx(-0.3, abs=2e-4)
+    assert before.end_s + before.dt_s == pytest.approx(0.0, abs=1e-9)
+    assert furthest(longer, usual, usual.names) == 0
+    assert before["enabled"][0] == 1.0

@@ -4,12 +4,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from pvlvrt_compliance.errors import SimulationError, UsageError
 from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.loop import PLANT_CHANNELS
 from waiting import PATIENCE_S, stopped_in_its_loop, wait_until
 
 SCENARIO = Scenario(sag=Sag(depth=0.0), duration_s=0.1, after_s=0.1)
@@ -43,6 +45,43 @@ def test_bad_deed_is_told_with_its_time(opened, deed, reason):
     assert WHEN in str(error.value)
     assert f"about to {deed}" in str(error.value)
     assert opened("misbehaving.py:Controller")(SCENARIO, QUICK).end_s > 0.4
+
+
+TRIPPED = parameters_from(("simulation.settling_s=0.2", "protection.overcurrent_pu=0.5"))
+"""The relay trips as soon as it is armed, before any deed."""
+
+
+@pytest.mark.parametrize(
+    "deed", ["raise", "nan", "range", "two", "none", "words", "exit", "sys.exit", "crash", "orphan"]
+)
+def test_bad_deed_after_a_trip_is_ignored(opened, deed):
+    """No command counts after a trip, nor what comes in place of one: it is noted, and the plant's record is whole."""
+    simulator = opened("misbehaving.py:Controller", deed=deed)
+    (segment,) = simulator(SCENARIO, TRIPPED)
+    (well,) = opened("misbehaving.py:Controller")(SCENARIO, TRIPPED)
+    assert all(np.array_equal(segment[name], well[name]) for name in PLANT_CHANNELS)
+    assert segment["connected"].max() == 0
+    (note,) = [note for note in simulator.notes if note.startswith("ignored, as it came after a trip: ")]
+    assert WHEN in note
+
+
+def test_controller_that_is_well_is_called_after_a_trip(opened):
+    """It sees that it is not connected any more, and what it has to say is recorded to the end."""
+    (segment,) = opened("misbehaving.py:Controller")(SCENARIO, TRIPPED)
+    assert segment["time_s"][-1] - segment["time_s"][0] == pytest.approx(segment.end_s - segment.t0_s, abs=3e-4)
+
+
+def test_command_without_a_number_ends_no_calls_after_a_trip(opened):
+    """Commands that are none are passed over one by one: further signals are recorded to the end."""
+    (segment,) = opened("misbehaving.py:Controller", deed="nan")(SCENARIO, TRIPPED)
+    assert segment["time_s"][-1] > 0.4
+    assert np.isfinite(segment["m_alpha"]).all()
+
+
+def test_bad_deed_before_a_trip_is_an_error(opened):
+    """A plant that has relays, but has not tripped yet, ends the run as ever."""
+    with pytest.raises(SimulationError, match="not a finite number"):
+        opened("misbehaving.py:Controller", deed="nan", at_s=0.25)(SCENARIO, TRIPPED)
 
 
 def test_endless_loop_is_stopped(opened):

@@ -26,6 +26,11 @@ from waiting import PATIENCE_S, doubled
 FOLDER = Path(__file__).parent
 EXAMPLES = FOLDER.parents[2] / "examples"
 QUICK = parameters_from(("simulation.settling_s=0.02", "simulation.synchronising_s=0.01"))
+NO_RELAYS = parameters_from(
+    ("simulation.settling_s=0.02", "simulation.synchronising_s=0.01", "protection.overcurrent_pu=100")
+)
+"""Nothing trips: a controller that goes on with what modulates loses its plant, and what it does wrong counts."""
+
 SHORT = Scenario(sag=Sag(depth=0.0), duration_s=0.1, after_s=0.1)
 PYTHON_EXAMPLE = f'stdio:"{sys.executable}" "{EXAMPLES / "program-python" / "controller.py"}"'
 
@@ -121,7 +126,19 @@ def listening(mode):
 def test_programs_that_fail(mode, what, reason):
     """Whatever a program does at 0.07 s ends the run there, with the reason."""
     with pytest.raises(SimulationError, match=reason):
-        ForeignSimulator(program(mode, what))(SHORT, QUICK)
+        ForeignSimulator(program(mode, what))(SHORT, NO_RELAYS)
+
+
+@pytest.mark.parametrize("mode", ["json", "binary"])
+@pytest.mark.parametrize("what", ["dies", "garbage", "twice", "half", "nan", "huge", "gives-up"])
+def test_programs_that_fail_after_a_trip(mode, what):
+    """Once the relay has tripped none of that ends the run: it is noted, and the record goes on to its end."""
+    simulator = ForeignSimulator(program(mode, what))
+    record = simulator(SHORT, QUICK)
+    assert record.end_s == pytest.approx(SHORT.end_s, abs=1e-4)
+    assert record.segments[0]["connected"][-1] == 0
+    assert record.segments[0]["trip_cause"][-1] > 0
+    assert any(note.startswith("ignored, as it came after a trip: ") for note in simulator.notes)
 
 
 @pytest.mark.parametrize("mode", ["json", "binary"])
@@ -132,7 +149,7 @@ def test_program_that_hangs(mode):
     """
     for limit_s in doubled(0.5):
         with pytest.raises(SimulationError, match=f"(?s) at .*did not answer within {limit_s:g} s") as error:
-            ForeignSimulator(program(mode, "hangs"), {"reply_timeout_s": limit_s})(SHORT, QUICK)
+            ForeignSimulator(program(mode, "hangs"), {"reply_timeout_s": limit_s})(SHORT, NO_RELAYS)
         if "at 0.07" in str(error.value):
             return
 
@@ -148,7 +165,7 @@ def test_program_that_hangs(mode):
 def test_answers_that_do_not_fit(what, reason):
     """An answer in JSON without a number where one is due is refused, and shown."""
     with pytest.raises(SimulationError, match=reason):
-        ForeignSimulator(program("json", what))(SHORT, QUICK)
+        ForeignSimulator(program("json", what))(SHORT, NO_RELAYS)
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ import shutil
 import struct
 import sys
 
+import numpy as np
 import pytest
 
 from pvlvrt_compliance.errors import SimulationError, UsageError
@@ -12,6 +13,7 @@ from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
+from pvlvrt_compliance.simulation.loop import PLANT_CHANNELS
 from waiting import stopped_in_its_loop
 
 pytestmark = pytest.mark.compiler
@@ -54,6 +56,25 @@ def test_what_is_wrong_is_told_with_its_time(misbehaving, how, reason):
     assert reason in str(error.value)
     assert WHEN in str(error.value)
     assert misbehaving(NOTHING)(SCENARIO, QUICK).end_s > 0.4
+
+
+TRIPPED = parameters_from(
+    ("simulation.settling_s=0.2", "simulation.synchronising_s=0.2", "protection.overcurrent_pu=0.5")
+)
+"""The relay trips as soon as it is armed, before anything happens."""
+
+
+@pytest.mark.parametrize("how", [CRASH, ABORT, NAN, TOO_LARGE, ERROR, UNDEFINED, EXIT])
+def test_what_comes_after_a_trip_is_ignored(misbehaving, how):
+    """It ends no run but is noted with its time; the plant's record is that of a library that does nothing wrong."""
+    simulator = misbehaving(how)
+    (segment,) = simulator(SCENARIO, TRIPPED)
+    (note,) = simulator.notes
+    assert note.startswith("ignored, as it came after a trip: ")
+    assert WHEN in note
+    (well,) = misbehaving(NOTHING)(SCENARIO, TRIPPED)
+    assert segment["connected"].max() == 0
+    assert all(np.array_equal(segment[name], well[name]) for name in PLANT_CHANNELS)
 
 
 def test_endless_loop_is_stopped(misbehaving):

@@ -1,0 +1,62 @@
+"""The faults of a record: each from its start to its clearing, whatever levels it has in between."""
+
+from itertools import groupby
+
+from pvlvrt_compliance.disturbance.model import Stretch
+from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
+from pvlvrt_compliance.measure.windows import Span, standard_windows
+
+
+def faults(evidence: Evidence) -> tuple[Stretch, ...]:
+    """Runs of sags up to a trip, each as one stretch; without any, what the test gives its times from.
+
+    Raises
+    ------
+    NotApplicable
+        When the inverter has tripped before.
+    MeasurementError
+        When the record does not say everywhere whether the breaker is closed.
+    """
+    parts = evidence.stretches_until("trip")
+    runs = [list(run) for kind, run in groupby(parts, key=lambda part: part.kind) if kind == "sag"]
+    found = tuple(run[0].model_copy(update={"end_s": run[-1].end_s}) for run in runs)
+    clear_s = min(evidence.disturbance.clear_s, parts[-1].end_s)
+    return found or (parts[0].model_copy(update={"end_s": clear_s}),)
+
+
+def levels(fault: Stretch, evidence: Evidence) -> tuple[Stretch, ...]:
+    """The stretches that a fault is made of."""
+    inside = evidence.disturbance.following_stretches(fault.end_s)
+    return tuple(part for part in inside if part.begin_s >= fault.begin_s)
+
+
+def window_in(fault: Stretch, evidence: Evidence) -> Span | None:
+    """The during-window of a fault, None when it is too short for one."""
+    end_s = evidence.waveforms.end_s
+    return standard_windows(fault.begin_s, fault.end_s, end_s, evidence.frequency_hz, evidence.rules).during
+
+
+def is_cut_by_trip(fault: Stretch, evidence: Evidence) -> bool:
+    """Whether the inverter trips before the fault is cleared."""
+    opened_s = evidence.known_opening_s
+    return opened_s is not None and opened_s <= fault.end_s
+
+
+def require_clearing(fault: Stretch, evidence: Evidence) -> None:
+    """Let off what follows a clearing that no one waited for.
+
+    Raises
+    ------
+    NotApplicable
+        When the inverter trips before the fault is cleared.
+    """
+    if is_cut_by_trip(fault, evidence):
+        raise NotApplicable(f"not judged after the trip at {evidence.known_opening_s:.3f} s")
+
+
+def next_fault_s(fault: Stretch, evidence: Evidence) -> float | None:
+    """When the voltage departs again after a fault, or the inverter trips (s); None when neither follows."""
+    parts = [part for part in evidence.stretches_until("trip") if part.begin_s >= fault.end_s]
+    departed = next((part.begin_s for part in parts if part.kind != "normal"), None)
+    opened_s = evidence.known_opening_s
+    return min((t for t in (departed, opened_s) if t is not None), default=None)

@@ -1,0 +1,96 @@
+"""How far something swings about a straight line, how fast, and whether it dies away."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from pvlvrt_compliance.waveforms.container import Samples
+
+_STEP_S = 1e-3
+"""Step of the series that a frequency is looked for in: swings of a control are far below the 500 Hz it carries (s)."""
+
+_PADDING = 8
+"""Length that the series is filled up to, in its own: lines of the spectrum then lie an eighth of 1/length apart."""
+
+
+_ROUND_OFF = 1e-12
+"""Part of a series' size below which it does not swing."""
+
+
+class Swing(NamedTuple):
+    """How far a series goes to and fro."""
+
+    peak_to_peak: float
+    mean: float
+    at: int
+    """Sample that lies furthest from its straight line."""
+
+
+class Tone(NamedTuple):
+    """The strongest oscillation of a series."""
+
+    frequency_hz: float
+    damping_ratio: float
+    """Of the decay e^(-damping 2 pi f t); 0 where it holds, negative where it grows."""
+
+
+def without_line(t_s: Samples, x: Samples, step_s: Samples) -> Samples:
+    """A series less its least-squares straight line, shape (n,), each sample counting as long as it lasts."""
+    weight = step_s / step_s.sum()
+    since = t_s - t_s @ weight
+    level = x - x @ weight
+    spread = (weight * since) @ since
+    rest: Samples = level - (since * ((weight * since) @ level) / spread if spread > 0 else 0.0)
+    return rest
+
+
+def swing(t_s: Samples, x: Samples, step_s: Samples) -> Swing:
+    """Peak to peak of a series about its straight line, but no more than it goes both up and down by.
+
+    What only rises, however it does, is a recovery and no swing; of a sinusoid of one and a half periods or more its
+    peak to peak is left.
+
+    Parameters
+    ----------
+    t_s, x, step_s : array, shape (n,)
+        Instants (s), values, and how long each sample lasts (s).
+    """
+    rest = without_line(t_s, x, step_s)
+    size = min(float(np.ptp(rest)), to_and_fro(x))
+    return Swing(size, float(np.average(x, weights=step_s)), int(np.abs(rest).argmax()))
+
+
+def to_and_fro(x: Samples) -> float:
+    """The smaller of a series' largest rise and its largest fall, each from any sample to a later one."""
+    rise = float((x - np.minimum.accumulate(x)).max())
+    fall = float((np.maximum.accumulate(x) - x).max())
+    return min(rise, fall)
+
+
+def tone(t_s: Samples, x: Samples, step_s: Samples) -> Tone | None:
+    """The strongest line of the spectrum of a series about its straight line, and how it dies away.
+
+    The damping is taken from the rms of the first and of the second half: e^(-a t) makes their ratio e^(-a T/2) over a
+    length T. None where the series does not swing.
+
+    Parameters
+    ----------
+    t_s, x, step_s : array, shape (n,)
+        As `swing`.
+    """
+    rest = without_line(t_s, x, step_s)
+    grid = np.arange(t_s[0], t_s[-1], _STEP_S)
+    if len(grid) < 4:
+        return None
+    y = np.interp(grid, t_s, rest)
+    size = _PADDING * len(grid)
+    spectrum = np.abs(np.fft.rfft(y * np.hanning(len(y)), size))
+    line = int(spectrum[1:].argmax()) + 1
+    frequency_hz = line / (size * _STEP_S)
+    half = len(y) // 2
+    first, second = (math.sqrt(float(np.mean(part**2))) for part in (y[:half], y[-half:]))
+    if min(first, second) <= _ROUND_OFF * float(np.abs(x).max()):
+        return None
+    decay = math.log(first / second) / (half * _STEP_S)
+    return Tone(frequency_hz, decay / math.hypot(decay, 2 * math.pi * frequency_hz))
