@@ -161,6 +161,7 @@ LIBRARY = (
 
 
 @linux
+@pytest.mark.slow
 def test_a_library_adopts_nobody_and_leaves_signals_alone():
     """Signals and orphans are the business of the program that uses the package."""
     spec = f"{Path(__file__).parent / 'simulation' / 'doors' / 'misbehaving.py'}:Controller"

@@ -110,6 +110,7 @@ def place():
     shutil.rmtree(folder)
 
 
+@pytest.mark.slow
 def test_an_edit_decides_where_nothing_can_be_kept(place):
     """No home, one that cannot be written in, or no cache folder that can be made: the sources as they are decide."""
     place.give(place.checkout)
@@ -133,6 +134,7 @@ def test_an_edit_decides_where_nothing_can_be_kept(place):
     assert not (place.home / ".cache").exists()
 
 
+@pytest.mark.slow
 def test_an_installation_that_cannot_be_written(place):
     """Its code is kept in the user's home. An edit decides; the text of before has its code still, if that is whole."""
     place.close()

@@ -77,6 +77,7 @@ def test_the_end_of_the_run_is_the_end_of_its_children(start, tmp_path):
     assert list((tmp_path / "tmp").iterdir()) == []
 
 
+@pytest.mark.slow
 def test_what_a_killed_command_leaves_in_the_temporary_folder(start, program, tmp_path):
     """It is gone once the next run has begun, whatever controller that has."""
     process, child = start(hangs=True)

@@ -99,6 +99,7 @@ def test_project_in_python_gates(program, in_python):
 
 @pytest.mark.compiler
 @needs_gcc
+@pytest.mark.slow
 def test_project_in_c_gates(program, in_c):
     """So does the C controller, tied to the plant by the mapping file beside it."""
     assert_gates(program, in_c, "./libcontroller.so")

@@ -72,6 +72,7 @@ def test_an_edit_that_keeps_the_time_of_a_file_is_compiled(kept, tmp_path, name)
     assert ran(program, kept_code) == (f"{RIGHT} 1", "")
 
 
+@pytest.mark.slow
 def test_two_versions_side_by_side(tmp_path, cache):
     """Two checkouts with one cache folder each find their own code, in turns."""
     first, second = written(tmp_path / "first"), written(tmp_path / "second")

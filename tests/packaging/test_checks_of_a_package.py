@@ -128,6 +128,7 @@ def results_in(folder: Path) -> dict:
     return {verdict["check"]: verdict for verdict in test["checks"]} | {"test": test}
 
 
+@pytest.mark.slow
 def test_its_requirement_is_typed_judged_and_drawn(check, tmp_path):
     """A requirement of its own stands beside the built-in ones; its band is in the figure."""
     done = check(PROFILE.format(number="floor_pu"), "--sag", "50%", "--output", "out", "--profile")

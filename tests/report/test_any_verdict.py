@@ -58,6 +58,7 @@ def _run(*checks, **fields):
     found=st.lists(st.lists(verdicts, min_size=1, max_size=3), min_size=1, max_size=3),
     expect=st.sampled_from([None, "ride_through", "may_trip", "must_trip"]),
 )
+@pytest.mark.slow
 def test_any_number_may_be_missing(found, expect):
     """Whatever is None, all formats are written, agree on what is marginal, and nothing reads `None` or is cut."""
     tests = [

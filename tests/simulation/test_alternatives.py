@@ -42,6 +42,7 @@ def under(simulated):
 
 
 @pytest.mark.parametrize(("frequency_hz", "depth"), SAGS)
+@pytest.mark.slow
 def test_the_fourth_strategy_holds_q_within_what_the_third_holds_p(under, frequency_hz, depth):
     """Constant means as constant: Q at 2f under strategy 4 is at most P at 2f under strategy 3."""
     p_third, q_third = swings(under("constant-p-sinusoidal", frequency_hz, depth))
