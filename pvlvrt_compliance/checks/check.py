@@ -52,6 +52,16 @@ class Check(ABC):
             When evidence is missing: `not_evaluated`.
         """
 
+    def released_at_s(self, requirement: Any, evidence: "Evidence") -> float | None:  # noqa: ARG002
+        """When the requirement lets the inverter go (s), for checks that judge the connection; None: it never does.
+
+        Raises
+        ------
+        MeasurementError
+            When the record does not show it.
+        """
+        return None
+
     def limits(self, requirement: Any, evidence: "Evidence") -> tuple[Band, ...]:  # noqa: ARG002
         """What a figure draws of the requirement, in a record that it was judged in."""
         return ()

@@ -3,8 +3,6 @@
 from collections.abc import Callable, Iterable
 
 from pvlvrt_compliance.checks.check import Check, RowCheck
-from pvlvrt_compliance.checks.connection.release import released_at_s
-from pvlvrt_compliance.checks.connection.ride_through import KIND as RIDE_THROUGH
 from pvlvrt_compliance.checks.judging import in_words, judge_safely, limits_safely
 from pvlvrt_compliance.checks.registry import find_check
 from pvlvrt_compliance.checks.validity import reason_not_to_count
@@ -115,10 +113,27 @@ def _of_rows(kind: str) -> bool:
         return False
 
 
-def _release(profile: Profile) -> Callable[[Evidence], float | None] | None:
-    """What says when the limits of the voltage let the inverter go."""
-    requirement = profile.requirements.of_kind(RIDE_THROUGH)
-    return None if requirement is None else lambda evidence: released_at_s(requirement, evidence)
+def _release(profile: Profile) -> Callable[[Evidence], float | None]:
+    """What says when the connection is no longer demanded: the first check of it that lets the inverter go."""
+    judges = _judges_of_connection(profile)
+
+    def first(evidence: Evidence) -> float | None:
+        found = [check.released_at_s(demand, evidence) for _, demand, check in judges]
+        return min((at_s for at_s in found if at_s is not None), default=None)
+
+    return first
+
+
+def _judges_of_connection(profile: Profile) -> list[tuple[str, Requirement, Check]]:
+    found = []
+    for kind, demand in profile.requirements.by_kind():
+        try:
+            check = find_check(kind)
+        except Exception:  # a check that cannot be loaded is told where its record is judged
+            continue
+        if check is not None and check.judges_connection:
+            found.append((kind, demand, check))
+    return found
 
 
 def _judge_all(profile: Profile, test: TestCase, evidence: Evidence) -> tuple[list[Verdict], tuple[Band, ...]]:
@@ -140,11 +155,11 @@ def _judge_all(profile: Profile, test: TestCase, evidence: Evidence) -> tuple[li
 def _left_out_connection(
     profile: Profile, demands: list[tuple[str, Requirement]], evidence: Evidence
 ) -> list[tuple[str, Requirement]]:
-    """Ride-through, where a row leaves it out and the inverter let go: that is judged in every test."""
-    requirement = profile.requirements.of_kind(RIDE_THROUGH)
-    if requirement is None or _stop(evidence) is None or any(kind == RIDE_THROUGH for kind, _ in demands):
+    """Checks of the connection that a row leaves out, where the inverter let go: that is judged in every test."""
+    if _stop(evidence) is None:
         return []
-    return [(RIDE_THROUGH, requirement)]
+    kept = {kind for kind, _ in demands}
+    return [(kind, demand) for kind, demand, _ in _judges_of_connection(profile) if kind not in kept]
 
 
 def _not_let_off_altogether(verdicts: list[Verdict]) -> list[Verdict]:

@@ -8,6 +8,7 @@ from pvlvrt_compliance.checks.connection.regions import Visit
 from pvlvrt_compliance.checks.verdicts import judged, judged_at_most
 from pvlvrt_compliance.evidence.evidence import Evidence, require_finite
 from pvlvrt_compliance.evidence.excursions import excursions, inside_of
+from pvlvrt_compliance.evidence.no_load import no_load_series_pu
 from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.evidence.stretches import after_each_step, settling_s
 from pvlvrt_compliance.measure.windows import Span
@@ -135,8 +136,7 @@ def _before_and_now(table: RegionTable, evidence: Evidence) -> tuple[float, Samp
 
 def _capable(evidence: Evidence) -> Mask:
     """Where the voltage without the inverter's current leaves room for a current: V+ - V-."""
-    kind = "u0" if evidence.no_load_phasors_pu is not None else "u"
-    room = evidence.sequence_pu(kind, 0) - evidence.sequence_pu(kind, 1)
+    room = no_load_series_pu(evidence, 0) - no_load_series_pu(evidence, 1)
     thresholds = evidence.thresholds
     found: Mask = np.nan_to_num(room) >= thresholds.least_difference_pu.value - thresholds.voltage_tolerance_pu.value
     return found

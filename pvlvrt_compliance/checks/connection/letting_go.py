@@ -6,6 +6,7 @@ import numpy as np
 
 from pvlvrt_compliance.disturbance.model import Voltage
 from pvlvrt_compliance.evidence.evidence import Evidence
+from pvlvrt_compliance.evidence.no_load import no_load_series_pu
 
 Moved = Literal["low voltage", "high voltage", "frequency", "angle"]
 """What is not that of normal operation."""
@@ -64,9 +65,8 @@ def grid_voltage(evidence: Evidence, at_s: float) -> Voltage:
     part = evidence.disturbance.stretch_at(at_s)
     if "recording" not in part.ramps:
         return part.voltage_at(at_s)
-    kind = "u" if evidence.no_load_phasors_pu is None else "u0"
     sample = min(int(np.searchsorted(evidence.t_s, at_s)), len(evidence.t_s) - 1)
-    positive, negative = (float(np.nan_to_num(evidence.sequence_pu(kind, index)[sample])) for index in (0, 1))
+    positive, negative = (float(np.nan_to_num(no_load_series_pu(evidence, index)[sample])) for index in (0, 1))
     return Voltage(positive_pu=positive, negative_pu=negative, zero_pu=0.0)
 
 

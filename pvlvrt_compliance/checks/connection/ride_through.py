@@ -9,7 +9,7 @@ from pvlvrt_compliance.checks.connection.feeding import least_current, without_c
 from pvlvrt_compliance.checks.connection.letting_go import stop_of
 from pvlvrt_compliance.checks.connection.recoveries import judged_recovery
 from pvlvrt_compliance.checks.connection.regions import Visit, visits
-from pvlvrt_compliance.checks.connection.release import Limits, limits_of
+from pvlvrt_compliance.checks.connection.release import Limits, limits_of, released_at_s
 from pvlvrt_compliance.checks.connection.responses import responses
 from pvlvrt_compliance.checks.connection.trips import judged_trip
 from pvlvrt_compliance.checks.verdicts import judged_at_most
@@ -53,6 +53,10 @@ class RideThroughCheck(Check):
                 raise
             return _reported(others)
         return _reported([connection, *others])
+
+    def released_at_s(self, requirement: RideThrough, evidence: Evidence) -> float | None:
+        """When the limits of the voltage do; of a row that is ridden through as a whole, not before it is over."""
+        return released_at_s(requirement, evidence)
 
     def limits(self, requirement: RideThrough, evidence: Evidence) -> tuple[Band, ...]:
         """The envelopes that apply to the record."""

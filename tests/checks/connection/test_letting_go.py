@@ -167,6 +167,23 @@ def test_a_row_leaves_out_ride_through_but_not_a_trip(bench, iec):
     assert KIND not in {check.check for check in made.result().checks}
 
 
+def test_a_row_leaves_out_the_check_that_decides(bench, demanding):
+    """A trip that ride-through leaves to the check of the frequency is judged by it, whatever the row names."""
+    bands = {"rows": [{"frequency_hz": (47, 49), "ride_s": 60}, {"frequency_hz": (49, 51)}], "clause": "7",
+             "confidence": "code", "source": "a test"}  # fmt: skip
+    profile = demanding(ride_through={"envelope": ENVELOPE, "envelope_tolerance_pu": 0.001},
+                        frequency_ride_through={"bands": bands}, current_limit={"limit_pu": 1.0, "tolerance_pu": 0.02,
+                        "settling_s": 0.06, "peak_pu": 2.0})  # fmt: skip
+    ramp = {"kind": "frequency_ramp", "t_s": 0.0, "rate_hz_s": -2.0, "duration_s": 0.4}
+    made = bench(depth=0, duration_s=0.5, profile=profile, scenario={"events": [ramp]}, p_sag_kw=500,
+                 disconnected_after_s=1.0)  # fmt: skip
+    made.test = made.test.model_copy(update={"checks": (KIND, "current_limit")})
+    found = {check.check: check.status for check in made.result().checks}
+    assert found["frequency_ride_through"] is Status.FAIL
+    made.disconnected_after_s = None
+    assert "frequency_ride_through" not in {check.check for check in made.result().checks}
+
+
 @pytest.mark.parametrize(("expect", "status"), [(None, Status.NOT_EVALUATED), ("may_trip", Status.NOT_APPLICABLE)])
 def test_a_test_in_which_nothing_was_judged(bench, limited, expect, status):
     """It is no evidence, unless its row says that nothing need be due."""
