@@ -139,14 +139,14 @@ _AFTERWARDS = (
     ),
     Mutant(
         "trips 20 ms after clearing",
-        "The voltage is normal again, and nothing lets the inverter go.",
-        RIDE_THROUGH,
+        "The voltage is normal again, and nothing lets the inverter go; at 49 Hz that is for the frequency to judge.",
+        (*RIDE_THROUGH, "frequency_ride_through"),
         slip=Slip(What.TRIP, when=When.AFTER, begin_s=0.02),
     ),
     Mutant(
         "trips in a normal grid 0.4 s after clearing",
         "The same when power is back: recovery has been shown by then.",
-        RIDE_THROUGH,
+        (*RIDE_THROUGH, "frequency_ride_through"),
         slip=Slip(What.TRIP, when=When.AFTER, begin_s=0.4),
     ),
     Mutant(
