@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from pvlvrt_compliance.simulation import loop
+from pvlvrt_compliance.simulation.columns import CHANNELS
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import unit_of
 
@@ -24,4 +24,4 @@ def differences(mine: NDArray[np.float64], theirs: NDArray[np.float64]) -> dict[
     """Largest difference of two records in every channel, of nominal; infinite where a number is missing."""
     nominal = Nominal()
     apart = np.nan_to_num(np.abs(mine - theirs).max(axis=0), nan=np.inf)
-    return {name: float(x) / scale_of(name, nominal) for name, x in zip(loop.CHANNELS, apart, strict=True)}
+    return {name: float(x) / scale_of(name, nominal) for name, x in zip(CHANNELS, apart, strict=True)}

@@ -20,12 +20,12 @@ import fmpy
 import numba
 
 ROOT = Path(__file__).parents[1]
-DOORS = ROOT / "tests" / "simulation" / "doors"
+DOORS = ROOT / "tests" / "controllers"
 sys.path.insert(0, str(DOORS))
 from fmu_sources import compiled, description, packed  # noqa: E402
 
-from pvlvrt_compliance.simulation.doors.opening import door_to  # noqa: E402
-from pvlvrt_compliance.simulation.native_call import call_address  # noqa: E402
+from pvlvrt_compliance.controllers.doors import door_to  # noqa: E402
+from pvlvrt_compliance.simulation.door.native_call import call_address  # noqa: E402
 from pvlvrt_compliance.units import Nominal  # noqa: E402
 
 MAPPING = {
@@ -37,7 +37,7 @@ MAPPING = {
 }
 
 
-@numba.njit  # type: ignore[untyped-decorator]
+@numba.njit(error_model="numpy")
 def call_often(address: int, argument: int, calls: int) -> int:
     """Call a function so many times; how often it failed."""
     failed = 0

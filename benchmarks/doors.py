@@ -13,6 +13,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,17 +22,19 @@ import numpy as np
 from twin import CONTROLLER, compiler
 
 import pvlvrt_compliance
-from pvlvrt_compliance.control.controller import Measured
+from pvlvrt_compliance.controllers.door import DoorCall
+from pvlvrt_compliance.controllers.library.door import LibraryDoor
+from pvlvrt_compliance.controllers.run import door_table
+from pvlvrt_compliance.controllers.simulator import ForeignSimulator
+from pvlvrt_compliance.measured import Measured
 from pvlvrt_compliance.plant.plant import PlantState
-from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
-from pvlvrt_compliance.simulation.doors.base import DoorCall
-from pvlvrt_compliance.simulation.doors.library_door import LibraryDoor
-from pvlvrt_compliance.simulation.exchange import DoorTable, call, commanded, hold, put_signals
-from pvlvrt_compliance.simulation.foreign_run import door_table
-from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
-from pvlvrt_compliance.simulation.loop import COMPLETED
+from pvlvrt_compliance.simulation.door.call import call, commanded, hold, put_signals
+from pvlvrt_compliance.simulation.door.exchange import PROGRESSES
+from pvlvrt_compliance.simulation.door.table import DoorTable, Timing
+from pvlvrt_compliance.simulation.outcome import COMPLETED
+from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.simulation.translate import controller_params, plant_params, plant_tables, steady_state
 from pvlvrt_compliance.units import Nominal
@@ -64,7 +67,7 @@ class Step(NamedTuple):
 
 def build(folder: Path) -> tuple[Path, Any]:
     """Build the controller, and a loop in C that calls it."""
-    interface = Path(pvlvrt_compliance.__file__).parent / "simulation" / "doors"
+    interface = Path(pvlvrt_compliance.__file__).parent / "controllers" / "library"
     gcc = compiler() or "gcc"
     flags = ["-std=c99", "-O2", "-shared", "-fPIC"]
     library, loop = folder / "libcontroller.so", folder / "loop.so"
@@ -76,7 +79,7 @@ def build(folder: Path) -> tuple[Path, Any]:
     return library, repeat
 
 
-@numba.njit(error_model="numpy")  # type: ignore[untyped-decorator]
+@numba.njit(error_model="numpy")
 def repeat_by_door(door: DoorTable, seen: Measured, plant: PlantState, m: complex, count: int) -> float:
     """What the loop does for the controller in one sample, so many times."""
     total = 0.0
@@ -88,7 +91,7 @@ def repeat_by_door(door: DoorTable, seen: Measured, plant: PlantState, m: comple
     return total
 
 
-@numba.njit(error_model="numpy")  # type: ignore[untyped-decorator]
+@numba.njit(error_model="numpy")
 def begin(door: DoorTable, seen: Measured, plant: PlantState, m: complex) -> int:
     """Start the controller in this state of the plant."""
     put_signals(door.signals, 0.0, seen, 0.0, plant, m, 1.0, 0.0)
@@ -104,7 +107,8 @@ def time_step(library: Path, repeat: Any, pairs: int) -> Step:
     seen = Measured(u_g_ab=start.u_g_ab, i_ab=start.plant.i, v_dc=start.plant.v_dc, i_pv=start.plant.i_pv)
     door = LibraryDoor(str(library), {})
     opened: DoorCall = door.open(Nominal())
-    table = door_table(opened, Nominal(), 0.0)
+    timing = Timing(armed=0, ratio=1, held=0, sample_time=1e-4)
+    table = door_table(opened, Nominal(), 0.0, timing, np.full(PROGRESSES, np.nan))
     if begin(table, seen, start.plant, start.m) != COMPLETED:
         raise RuntimeError(door.message())
     rows = [
@@ -131,7 +135,7 @@ def time_tests(library: Path, runs: int) -> tuple[list[float], list[float]]:
     """Wall time of a test of 1.5 s with the controller in C and with the bundled one (s), after one of each."""
     parameters = Parameters()
     in_c = ForeignSimulator(str(library))
-    return tuple(_wall_s(lambda run=run: run(_TEST, parameters), runs) for run in (in_c, simulate))  # type: ignore
+    return _wall_s(partial(in_c, _TEST, parameters), runs), _wall_s(partial(simulate, _TEST, parameters), runs)
 
 
 def _wall_s(run: Any, runs: int) -> list[float]:

@@ -51,7 +51,7 @@ def unequal_waveforms(twin: Twin) -> Iterator[str]:
         print(f"  {name}: at most {apart[channel]:.1e} of nominal ({channel})")
         if apart[channel] > TOLERANCE:
             yield f"{name}: {channel} differs by {apart[channel]:.1e} of nominal"
-        if (outcome.status, outcome.periods, outcome.plant.trip) != (other.status, other.periods, other.plant.trip):
+        if (outcome.status, outcome.period, outcome.plant.trip) != (other.status, other.period, other.plant.trip):
             yield f"{name}: the runs end differently"
 
 

@@ -7,27 +7,34 @@
 #include "blocks.h"
 #include "twin_plant.h"
 
-static inline double *record_phases(double *row, vector ab, double zero)
+static inline void record_phases(double *a, double *b, double *c, vector ab, double zero)
 {
     double along = SQRT2_3 * creal(ab), across = SQRT2_3 * SQRT3_2 * cimag(ab);
-    row[0] = along + zero;
-    row[1] = -0.5 * along + across + zero;
-    row[2] = -0.5 * along - across + zero;
-    return row + 3;
+    *a = along + zero;
+    *b = -0.5 * along + across + zero;
+    *c = -0.5 * along - across + zero;
 }
 
 static inline void record(double *row, const PlantState *x, const Observed *y, const ControllerSignals *s, double G)
 {
-    row = record_phases(row, y->u_ab, y->u_zero);
-    row = record_phases(row, y->u0_ab, y->u_zero);
-    row = record_phases(row, x->i, 0.0);
-    const double rest[] = {
-        x->v_dc,  x->i_pv,           1000.0 * G,       x->closed,  x->trip, s->V_fault, s->fault, s->w / (2 * PI),
-        s->v_ref, s->P_ref,          s->Q_ref,         creal(s->i_ref), cimag(s->i_ref), creal(s->m), cimag(s->m),
-    };
-    _Static_assert(9 + sizeof rest / sizeof *rest == CHANNELS, "one number a channel");
-    for (unsigned k = 0; k < sizeof rest / sizeof *rest; k++)
-        row[k] = rest[k];
+    record_phases(row + COLUMN_u_a_v, row + COLUMN_u_b_v, row + COLUMN_u_c_v, y->u_ab, y->u_zero);
+    record_phases(row + COLUMN_u0_a_v, row + COLUMN_u0_b_v, row + COLUMN_u0_c_v, y->u0_ab, y->u_zero);
+    record_phases(row + COLUMN_i_a_a, row + COLUMN_i_b_a, row + COLUMN_i_c_a, x->i, 0.0);
+    row[COLUMN_v_dc_v] = x->v_dc;
+    row[COLUMN_i_pv_a] = x->i_pv;
+    row[COLUMN_irradiance_w_m2] = 1000.0 * G;
+    row[COLUMN_connected] = x->closed;
+    row[COLUMN_trip_cause] = x->trip;
+    row[COLUMN_v_fault_pu] = s->V_fault;
+    row[COLUMN_fault_signal] = s->fault;
+    row[COLUMN_frequency_estimate_hz] = s->w / (2 * PI);
+    row[COLUMN_v_dc_ref_v] = s->v_ref;
+    row[COLUMN_p_ref_w] = s->P_ref;
+    row[COLUMN_q_ref_var] = s->Q_ref;
+    row[COLUMN_i_ref_alpha_a] = creal(s->i_ref);
+    row[COLUMN_i_ref_beta_a] = cimag(s->i_ref);
+    row[COLUMN_m_alpha] = creal(s->m);
+    row[COLUMN_m_beta] = cimag(s->m);
 }
 
 static inline bool finite_numbers(const PlantState *x, const ControllerSignals *s)
@@ -55,11 +62,11 @@ Outcome run(const PlantState *plant_start, const ControllerState *controller_sta
         Measured sampled = {.u_g_ab = y.u_ab, .i_ab = plant.i, .v_dc = plant.v_dc, .i_pv = plant.i_pv};
         ControllerSignals signals = controller_step(&controller, sampled, controller_params);
         if (!finite_numbers(&plant, &signals))
-            return (Outcome){.status = NOT_FINITE, .periods = n > 0 ? n : 0, .plant = plant};
+            return (Outcome){.status = NOT_FINITE, .period = n, .plant = plant};
         if (n >= 0)
             record(samples + CHANNELS * n, &plant, &y, &signals, p->G);
         advance(&plant, m, source, t, p, tables);
         m = signals.m;
     }
-    return (Outcome){.status = COMPLETED, .periods = count, .plant = plant};
+    return (Outcome){.status = COMPLETED, .period = count, .plant = plant};
 }

@@ -16,13 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.control import controller, lvrt, synchronised
-from pvlvrt_compliance.control.hardware import Hardware
 from pvlvrt_compliance.control.msogi_fll import MsogiFllState
+from pvlvrt_compliance.hardware.hardware import Hardware
+from pvlvrt_compliance.measured import Measured
 from pvlvrt_compliance.plant import grid, inverter, plant, protection, pv_array
-from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
-from pvlvrt_compliance.simulation import loop
+from pvlvrt_compliance.simulation import columns, outcome
+from pvlvrt_compliance.simulation.door.table import DoorTable
+from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.recorder import RecordingPlan
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.space_vectors import SQRT2_3, SQRT3_2
@@ -47,7 +49,7 @@ _FLAGS = ("-std=gnu99", "-O3", "-march=native", "-fcx-limited-range", "-Wall", "
 _OF_CONTROLLER = (
     synchronised.Synchronisation,
     lvrt.LvrtOrder,
-    controller.Measured,
+    Measured,
     controller.ControllerSignals,
     controller.ControllerState,
     controller.ControllerParams,
@@ -58,7 +60,7 @@ _OF_PLANT = (
     plant.Observed,
     plant.PlantParams,
     plant.PlantTables,
-    loop.Outcome,
+    outcome.Outcome,
 )
 _CONSTANTS_OF_CONTROLLER: Mapping[str, float] = {
     "PI": np.pi,
@@ -79,9 +81,10 @@ _CONSTANTS_OF_PLANT: Mapping[str, float] = {
     "DC_OVERVOLTAGE": protection.DC_OVERVOLTAGE,
     "UNDERVOLTAGE": protection.UNDERVOLTAGE,
     "FREQUENCY": protection.FREQUENCY,
-    "COMPLETED": loop.COMPLETED,
-    "NOT_FINITE": loop.NOT_FINITE,
-    "CHANNELS": len(loop.CHANNELS),
+    "COMPLETED": outcome.COMPLETED,
+    "NOT_FINITE": outcome.NOT_FINITE,
+    "CHANNELS": len(columns.CHANNELS),
+    **{f"COLUMN_{name}": column for column, name in enumerate(columns.CHANNELS)},
 }
 
 
@@ -204,6 +207,7 @@ class Arguments(NamedTuple):
     tables: plant.PlantTables
     controller_params: controller.ControllerParams
     hardware: Hardware | None  # the twin has none
+    door: DoorTable | None  # nor this
     plan: RecordingPlan  # the twin records every period
     samples: NDArray[np.float64]
 
@@ -217,9 +221,9 @@ def arguments_of(scenario: Scenario, parameters: Parameters | None = None) -> Ar
     """Arguments that `simulate` hands to its loop in a scenario; a sample that no run fills stays NaN."""
     seen: list[Arguments] = []
 
-    def no_loop(*arguments: Any) -> loop.Outcome:
+    def no_loop(*arguments: Any) -> outcome.Outcome:
         seen.append(Arguments(*arguments))
-        return loop.Outcome(status=loop.COMPLETED, periods=0, plant=arguments[0])
+        return outcome.Outcome(status=outcome.COMPLETED, period=0, plant=arguments[0])
 
     simulate(scenario, parameters or Parameters(), run=no_loop)
     seen[0].samples.fill(np.nan)
@@ -263,7 +267,7 @@ class Twin:
             check=True,
         )
         self._run = ctypes.CDLL(str(library)).run
-        self._run.restype = _structure(loop.Outcome)
+        self._run.restype = _structure(outcome.Outcome)
 
     def prepare(self, arguments: Arguments) -> Callable[[], Any]:
         """Bare call of the compiled loop on these arguments, which must stay alive; fills their samples."""
@@ -272,6 +276,8 @@ class Twin:
             raise ValueError("the twin writes contiguous float64 samples")
         if a.hardware is not None:
             raise ValueError("the twin has ideal hardware only")
+        if a.door is not None:
+            raise ValueError("the twin has the bundled controller only")
         if a.controller_params.precision.double is None:
             raise ValueError("the twin computes in double precision only")
         packed = [_packed(x) for x in (a.plant, a.controller, a.plant_params, a.tables, a.controller_params)]
@@ -280,10 +286,10 @@ class Twin:
         samples = ctypes.c_void_p(a.samples.ctypes.data)
         return lambda: self._run(start, control, m, first, params, tables, control_params, samples, count)
 
-    def run(self, arguments: Arguments) -> loop.Outcome:
+    def run(self, arguments: Arguments) -> outcome.Outcome:
         """Run the twin; fills the samples."""
-        outcome: loop.Outcome = _unpacked(loop.Outcome, self.prepare(arguments)())
-        return outcome
+        ended: outcome.Outcome = _unpacked(outcome.Outcome, self.prepare(arguments)())
+        return ended
 
 
 if __name__ == "__main__":

@@ -1,5 +1,88 @@
-"""Grid-code compliance tests for PV inverter controllers: profiles in, verdicts out."""
+"""Grid-code compliance tests for PV inverter controllers: profiles in, verdicts out.
 
-from importlib.metadata import version
+What stands in `__all__` is public, with `pvlvrt_compliance.controllers` and `pvlvrt_compliance.checks.api`; docs/api.md
+has it all. A name is imported when it is first used, so that importing the package costs nothing.
+"""
 
-__version__ = version("pvlvrt-compliance")
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pvlvrt_compliance.api import check, evaluate, load_profile
+    from pvlvrt_compliance.errors import (
+        MeasurementError,
+        OutputError,
+        ProfileError,
+        PvlvrtError,
+        SimulationError,
+        UsageError,
+    )
+    from pvlvrt_compliance.profile.profile import Profile
+    from pvlvrt_compliance.results import Finding, Results, Status, TestResult, Verdict, exit_status
+    from pvlvrt_compliance.results.reading import read_results
+    from pvlvrt_compliance.scenario.sag import Sag
+    from pvlvrt_compliance.scenario.scenario import Scenario
+    from pvlvrt_compliance.units import Nominal
+    from pvlvrt_compliance.waveforms import Segment, Waveforms
+    from pvlvrt_compliance.waveforms.recording import read_waveforms
+
+    __version__: str
+
+__all__ = [
+    "Finding",
+    "MeasurementError",
+    "Nominal",
+    "OutputError",
+    "Profile",
+    "ProfileError",
+    "PvlvrtError",
+    "Results",
+    "Sag",
+    "Scenario",
+    "Segment",
+    "SimulationError",
+    "Status",
+    "TestResult",
+    "UsageError",
+    "Verdict",
+    "Waveforms",
+    "__version__",
+    "check",
+    "evaluate",
+    "exit_status",
+    "load_profile",
+    "read_results",
+    "read_waveforms",
+]
+
+_HOMES = {
+    **dict.fromkeys(("check", "evaluate", "load_profile"), "api"),
+    **dict.fromkeys(("MeasurementError", "OutputError", "ProfileError"), "errors"),
+    **dict.fromkeys(("PvlvrtError", "SimulationError", "UsageError"), "errors"),
+    **dict.fromkeys(("Finding", "Results", "Status", "TestResult", "Verdict", "exit_status"), "results"),
+    **dict.fromkeys(("Segment", "Waveforms"), "waveforms"),
+    "Nominal": "units",
+    "Profile": "profile.profile",
+    "Sag": "scenario.sag",
+    "Scenario": "scenario.scenario",
+    "read_results": "results.reading",
+    "read_waveforms": "waveforms.recording",
+}
+"""Module of each public name."""
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        found: Any = version("pvlvrt-compliance")
+    elif name in _HOMES:
+        found = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -6,9 +6,9 @@ from pvlvrt_compliance.errors import PvlvrtError
 
 
 def resource_folder(name: str) -> Path:
-    """Return the folder ``profiles``, ``reports`` or ``templates``.
+    """Return the folder ``profiles`` or ``reports``.
 
-    A wheel carries all inside the package; an editable install has the first two beside it.
+    A wheel carries both inside the package; an editable install has them beside it.
 
     Raises
     ------

@@ -7,8 +7,8 @@ import pytest
 
 import draws
 from pvlvrt_compliance import kernel as kernel_module
-from rebuild import Loop, rebuilt_loop
-from wrong_parts import WRONG_PARTS
+from validation.mutations.rebuild import Loop, rebuilt_loop
+from validation.mutations.wrong_parts import WRONG_PARTS
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

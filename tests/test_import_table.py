@@ -1,9 +1,10 @@
 """Who may import whom: the table of the design, checked on the source of every module."""
 
 import ast
-import importlib.util
 import subprocess
 import sys
+from functools import cache
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -15,56 +16,111 @@ NAME = pvlvrt_compliance.__name__
 
 COMMON = {"errors", "units", "space_vectors", "resources", "texts"}
 KERNELS = {"kernel", "vectors", "sogi"}
-# By folder, or module at the root: what of the package it may import besides itself. "*" is everything.
+# By folder, or module at the root: what of the package it may import besides itself. "*" is everything; an entry with a
+# dot is one module of a folder.
 ALLOWED = {
-    "__init__": set(),
+    # Parse, call, print, exit: everything, inside the command that needs it; see COMMANDS.
+    "cli": {"*"},
+    # The public API.
+    "__init__": {"api", "errors", "profile", "results", "scenario", "units", "waveforms"},  # each when first used
+    # The public functions; they hand reports to the run, which knows none.
+    "api": {"checks", "profile", "report", "results", "scenario", "study", "units", "waveforms"},
+    "__main__": {"cli"},
+    # One file a format, and how a figure is drawn.
+    "report": COMMON | {"data", "disturbance", "evidence", "results", "waveforms", "profile"},
+    # The run: a job in, judged tests out. The kernel's digest is part of the provenance of a run.
+    "study": COMMON
+    | {"checks", "controllers", "data", "disturbance", "evidence", "kernel", "locks", "profile", "results", "scenario"}
+    | {"simulation", "waveforms"},
+    # Judging: by what evidence says, never by the simulator.
+    "checks": COMMON | {"data", "disturbance", "evidence", "measure", "profile", "results", "waveforms"},
+    # The one result: plain data, so that reading it stays light.
+    "results": {"errors", "texts", "measure.quantities", "disturbance.model"},
+    # What a check sees of one record.
+    "evidence": COMMON | {"disturbance", "measure", "profile", "waveforms"},
+    # What standards measure.
+    "measure": COMMON | {"waveforms"},
+    # What the grid did, made from a scenario or from a record.
+    "disturbance": COMMON | {"measure", "scenario", "waveforms"},
+    # The record and its files.
+    "waveforms": COMMON,
+    # The data model of a grid code.
+    "profile": COMMON | {"data", "scenario"},
+    # What every file that people write shares.
+    "data": {"errors", "resources"},
+    # What is asked of grid, weather and set-points.
+    "scenario": COMMON | {"data"},
+    # Controllers of users: whatever a door needs of the loop lies in simulation/door.
+    "controllers": COMMON | {"compiled", "data", "locks", "scenario", "simulation", "waveforms"},
+    # The loop over time, which joins plant, hardware and a controller.
+    "simulation": COMMON
+    | KERNELS
+    | {"plant", "control", "hardware", "measured", "parameter_group", "places", "scenario", "waveforms"},
+    # The block diagram; control and hardware know nothing of each other.
+    "control": COMMON | KERNELS | {"measured", "parameter_group"},
+    "hardware": COMMON | KERNELS | {"measured", "parameter_group", "places"},
+    "plant": COMMON | KERNELS | {"parameter_group"},
+    # At the root.
+    "measured": set(),
+    "parameter_group": set(),
+    "places": set(),
     "errors": set(),
     "units": {"errors"},
     "space_vectors": set(),
     "resources": {"errors"},
-    "processes": set(),
     "locks": set(),
     "texts": set(),
     "compiled": {"errors", "texts"},
     "kernel": {"compiled"},
-    "controllers": {"units"},  # what a user's own file imports
     "vectors": {"kernel", "space_vectors"},
     "sogi": {"kernel", "vectors"},
-    "waveforms": COMMON,
-    "data": {"errors", "resources"},  # what every file that people write shares
-    "scenario": COMMON | {"data"},
-    "profile": COMMON | {"data", "scenario"},
-    "measure": COMMON | {"waveforms"},
-    # What the grid did is made from a scenario or from a record; its plain data is read with a result.
-    "disturbance": COMMON | {"measure", "scenario", "waveforms"},
-    "evidence": COMMON | {"disturbance", "measure", "profile", "waveforms"},
-    "results": {"errors", "texts", "measure.quantities", "disturbance.model"},
-    "checks": COMMON | {"data", "disturbance", "evidence", "measure", "profile", "results", "waveforms"},
-    "control": COMMON | KERNELS,
-    "plant": COMMON | KERNELS,
-    "simulation": COMMON
-    | KERNELS
-    | {"compiled", "processes", "locks", "data", "controllers", "plant", "control", "scenario", "waveforms"},
-    # The kernel's digest is part of the provenance of a run.
-    "study": COMMON | {"kernel", "locks", "profile", "scenario", "simulation", "checks", "results", "waveforms"},
-    "report": COMMON | {"data", "disturbance", "results", "waveforms", "profile", "measure"},
-    "cli": {"*"},
-    "templates": set(),  # projects of users, which stand alone
 }
-NUMBA = {"compiled", "kernel", "plant", "control", "simulation"}
+
+NUMBA = {"compiled", "kernel", "plant", "control", "hardware", "simulation"}
+"""The five rooms that know numba; the kernel's has two names."""
+
+NEVER = (
+    ("simulation", "controllers", "the loop takes whatever is behind a door"),
+    ("study", "report", "a run gives results; what is made of them is another's affair"),
+    ("checks", "simulation", "what is judged is a record, simulated or not"),
+    *((room, "cli", "only the command line calls") for room in ALLOWED if room not in ("cli", "__main__")),
+    *(
+        (room, part, "records by others are read, measured, judged and shown in the same way")
+        for room in ("checks", "disturbance", "evidence", "measure", "profile", "results", "waveforms", "report")
+        for part in ("simulation", "plant", "control", "hardware", "controllers", "study")
+    ),
+)
+"""Who never imports whom, directly or by what it imports, and why, whatever the table says."""
+
+COMMANDS = {
+    "main": {"controllers"},  # what signals and the end of the command are
+    "running": {"controllers"},  # likewise
+    "controllers/header": {"controllers"},
+    "controllers/inspect": {"controllers", "simulation"},  # parameters, which load no kernel
+    "controllers/new": {"controllers"},
+}
+"""Files of `cli/` that may touch simulation or controllers; all others are of grid codes and of files."""
+
+PRINT_OR_EXIT = ("cli", "controllers/process")
+"""Where something is printed, or a process ended; a process of a controller answers by a pipe."""
 
 
 def modules() -> list[Path]:
-    """Every module of the package."""
-    return sorted(PACKAGE.rglob("*.py"))
+    """Every module of the package; projects that users begin with are none."""
+    return [path for path in sorted(PACKAGE.rglob("*.py")) if "templates" not in path.parts]
+
+
+def place_of(path: Path) -> str:
+    """Path within the package, without its suffix."""
+    return path.relative_to(PACKAGE).with_suffix("").as_posix()
 
 
 def part_of(path: Path) -> str:
     """Folder of a module, or its own name at the root."""
-    parts = path.relative_to(PACKAGE).with_suffix("").parts
-    return parts[0]
+    return place_of(path).split("/")[0]
 
 
+@cache
 def imported(path: Path) -> set[str]:
     """Dotted names of all modules that a file imports anywhere, in functions too."""
     names: set[str] = set()
@@ -91,7 +147,23 @@ def own(names: set[str]) -> set[str]:
     return {name.removeprefix(NAME + ".") for name in names if name.startswith(NAME + ".")}
 
 
-@pytest.mark.parametrize("path", modules(), ids=lambda path: path.relative_to(PACKAGE).as_posix())
+def rooms(path: Path) -> set[str]:
+    """Folders, and modules at the root, that a module imports."""
+    return {name.split(".")[0] for name in own(imported(path))}
+
+
+def loaded_by(code: str) -> set[str]:
+    """Names of the modules that a process has loaded after this code, with those of their packages."""
+    program = f"import sys\n{code}\nprint('loaded', *sys.modules)"
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    names = run.stdout.splitlines()[-1].split()[1:]
+    return {".".join(name.split(".")[:depth]) for name in names for depth in (1, 2)}
+
+
+every_module = pytest.mark.parametrize("path", modules(), ids=place_of)
+
+
+@every_module
 def test_a_module_imports_only_what_its_folder_may(path):
     """Imports follow the table; whoever needs more changes the table first."""
     part = part_of(path)
@@ -104,11 +176,63 @@ def test_a_module_imports_only_what_its_folder_may(path):
         assert "*" in allowed or entries & allowed or package_of_an_entry, f"{part} must not import {name}"
 
 
-@pytest.mark.parametrize("path", modules(), ids=lambda path: path.relative_to(PACKAGE).as_posix())
+@every_module
 def test_numba_stays_with_the_kernels(path):
     """Only compiled code knows numba, so that reading a profile or a record never pays for it."""
     if part_of(path) not in NUMBA:
-        assert not {name for name in imported(path) if name.split(".")[0] == "numba"}
+        assert not {name.split(".")[0] for name in imported(path)} & {"numba", "llvmlite"}
+
+
+@every_module
+def test_only_the_command_line_prints_or_exits(path):
+    """All others return and raise, so that a notebook, a test or another program can use them."""
+    if place_of(path).startswith(tuple(f"{place}/" for place in PRINT_OR_EXIT)):
+        return
+    tree = ast.parse(path.read_text("utf-8"))
+    used = {ast.unparse(node) for node in ast.walk(tree) if isinstance(node, ast.Name | ast.Attribute)}
+    assert not used & {"print", "exit", "quit", "SystemExit", "sys.exit", "os._exit", "os.abort"}
+    assert not used & {"sys.stdout", "sys.stderr", "Console", "rich.print", "typer.echo", "typer.Exit"}
+
+
+@pytest.mark.parametrize("path", [path for path in modules() if part_of(path) == "cli"], ids=place_of)
+def test_a_command_touches_what_it_needs(path):
+    """Commands that neither simulate nor open a controller cannot come to depend on either."""
+    allowed = COMMANDS.get(place_of(path).removeprefix("cli/"), set())
+    found = rooms(path) & {"simulation", "controllers", "plant", "control", "hardware", "kernel"}
+    assert found <= allowed
+
+
+def test_commands_that_may_touch_it_do():
+    """A command that no longer needs the simulator, or a controller, leaves the list."""
+    for name, allowed in COMMANDS.items():
+        assert allowed <= rooms(PACKAGE / "cli" / f"{name}.py"), name
+
+
+@pytest.mark.parametrize(("room", "other", "why"), NEVER, ids=[f"{room} {other}" for room, other, _ in NEVER])
+def test_never(room, other, why):
+    """Some rooms have nothing to do with each other, not even by way of a third."""
+    found, new = set(), {room}
+    while new:
+        found |= new
+        new = {name for path in modules() if part_of(path) in new for name in rooms(path)} - found
+        # A result has plain data of these two alone.
+        new -= {"measure", "disturbance"} if room == "results" else set()
+    assert other not in found, why
+
+
+def test_reports_measure_nothing():
+    """What is drawn and told is what was judged: no report measures it again."""
+    for path in (PACKAGE / "report").rglob("*.py"):
+        assert "measure" not in rooms(path), path
+
+
+def test_imports_flow_one_way():
+    """No two rooms need each other: the rooms have an order, which is that of the data."""
+    parts = sorted({part_of(path) for path in modules()} - {"__init__"})
+    needs = {part: {n for p in modules() if part_of(p) == part for n in rooms(p)} - {part} for part in parts}
+    needs["results"] -= {"measure", "disturbance"}  # two modules of plain data, which import nothing but numbers
+    order = list(TopologicalSorter(needs).static_order())
+    assert order.index("simulation") < order.index("controllers") < order.index("cli")
 
 
 def test_one_room_reads_toml():
@@ -117,26 +241,12 @@ def test_one_room_reads_toml():
     assert readers == {"data"}
 
 
-def test_checks_never_see_the_simulator():
-    """What is judged is a record, simulated or recorded: no check reaches simulation, plant or control."""
-    for folder in ("checks", "disturbance", "evidence", "measure", "profile", "results", "waveforms", "report"):
-        for path in (PACKAGE / folder).rglob("*.py"):
-            assert not {name.split(".")[0] for name in own(imported(path))} & {"simulation", "plant", "control"}, path
-
-
 def test_no_check_sees_a_scenario():
     """What the grid did reaches checks as a disturbance, made from a scenario or found in a record."""
     for path in (PACKAGE / "checks").rglob("*.py"):
-        assert not {name.split(".")[0] for name in own(imported(path))} & {"scenario", "simulation"}, path
-        names = {node.id for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Name)}
+        assert "scenario" not in rooms(path), path
+        names = {node.id for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.Name)}
         assert "Scenario" not in names, path
-
-
-def test_reading_results_stays_light():
-    """Whoever reads a result of a run needs neither numpy nor a simulator."""
-    code = f"import sys, {NAME}.results; print(*sorted(m.split('.')[0] for m in sys.modules))"
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert not {"numpy", "numba", "scipy", "plotly"} & set(run.stdout.split())
 
 
 @pytest.mark.parametrize("part", sorted(ALLOWED))
@@ -150,13 +260,25 @@ def test_the_table_allows_nothing_that_nobody_needs(part):
 
 def test_the_table_has_no_entry_for_what_is_gone():
     """Each name of the table is a part of the package."""
-    parts = {part_of(path) for path in modules()}
-    assert set(ALLOWED) <= parts
+    assert set(ALLOWED) <= {part_of(path) for path in modules()}
 
 
-@pytest.mark.skipif(importlib.util.find_spec(f"{NAME}.cli.main") is None, reason="there is no command line yet")
-def test_the_command_line_starts_light():
-    """The application is there for --help before numba, scipy or plotly are imported."""
-    code = f"import sys, {NAME}.cli.main; print(*sorted(m.split('.')[0] for m in sys.modules))"
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert not {"numba", "scipy", "plotly", "pandas"} & set(run.stdout.split())
+HEAVY = {"numba", "scipy", "plotly", "pandas"}
+
+
+@pytest.mark.parametrize(
+    ("code", "never"),
+    [
+        (f"import {NAME}.controllers", HEAVY | {"numpy", "pydantic", "typer", "rich", "ctypes", "subprocess"}),
+        (f"import {NAME}.results", HEAVY | {"numpy"}),
+        (f"import {NAME}.cli.main", HEAVY),
+        (f"from {NAME}.cli.main import run\nrun(['profiles', 'list'])", HEAVY),
+        (f"from {NAME}.cli.main import run\nrun(['controllers', 'header'])", HEAVY | {"numpy"}),
+        (f"import {NAME}.checks.api, {NAME}.checks.evaluate, {NAME}.waveforms.recording", HEAVY - {"scipy"}),
+        (f"import {NAME}.simulation.simulate", {"plotly", f"{NAME}.controllers", f"{NAME}.study", f"{NAME}.checks"}),
+    ],
+    ids=["a user's controller", "results", "--help", "profiles", "header", "judging", "simulation"],
+)
+def test_what_is_imported_stays_light(code, never):
+    """What is only read, shown or judged never pays for the simulator, nor a simulation for what comes after it."""
+    assert not loaded_by(code) & never

@@ -36,7 +36,7 @@ def test_the_python_behind_a_kernel():
 SHORT_RUN = """
 import sys
 import numpy as np
-from pvlvrt_compliance.scenario.parameters import parameters_from
+from pvlvrt_compliance.simulation.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.simulate import simulate

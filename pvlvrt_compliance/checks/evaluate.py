@@ -53,9 +53,26 @@ def evaluate(
     TestResult
         A verdict on each requirement; what cannot be measured is `not_evaluated` with the reason, nothing is raised.
     """
-    evidence = collect(profile, test, waveforms, nominal, available_power_w, disturbance, _release(profile))
+    return judge_record(profile, test, evidence_of(profile, test, waveforms, nominal, available_power_w, disturbance))
+
+
+def evidence_of(
+    profile: Profile,
+    test: TestCase,
+    waveforms: Waveforms,
+    nominal: Nominal,
+    available_power_w: float,
+    disturbance: Disturbance | None = None,
+) -> Evidence:
+    """What `evaluate` judges one record by; the parameters are its own."""
+    return collect(profile, test, waveforms, nominal, available_power_w, disturbance, _release(profile))
+
+
+def judge_record(profile: Profile, test: TestCase, evidence: Evidence) -> TestResult:
+    """Judge the evidence of one record by every requirement of a profile, as `evaluate` does."""
     verdicts, bands = _judge_all(profile, test, evidence)
     result = _result(profile, test, verdicts, evidence.disturbance)
+    nominal, waveforms = evidence.nominal, evidence.waveforms
     found = {
         "bands": bands,
         "measurements": _measurements(evidence),
@@ -66,7 +83,7 @@ def evaluate(
             phase_voltage_v=nominal.phase_voltage_v,
             frequency_hz=nominal.frequency_hz,
         ),
-        "available_power_kw": available_power_w / 1e3,
+        "available_power_kw": evidence.available_power_w / 1e3,
     }
     return result.model_copy(update=found)
 

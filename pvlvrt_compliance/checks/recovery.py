@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+from pvlvrt_compliance.checks.limits import level
 from pvlvrt_compliance.checks.verdicts import judged_at_most
 from pvlvrt_compliance.data.marks import Marked, Number
 from pvlvrt_compliance.errors import MeasurementError
@@ -9,7 +10,8 @@ from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require
 from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.measure.response import settled_from
 from pvlvrt_compliance.profile.requirements import Requirement
-from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.results import Band, Verdict
+from pvlvrt_compliance.results.band import ACTIVE_POWER
 from pvlvrt_compliance.waveforms.container import Samples
 
 
@@ -120,3 +122,14 @@ def judge_recovery(
         rests_on=rests_on,
         uncertainty=evidence.half_cycle_s,
     )
+
+
+def recovery_band(
+    kind: str, evidence: Evidence, *, from_s: float, fraction: Number, time_s: Number, until_s: float | None = None
+) -> tuple[Band, ...]:
+    """The same as a figure draws it: the least P from the time on, none where the record ends before."""
+    begin_s, end_s = from_s + time_s.value, evidence.waveforms.end_s if until_s is None else until_s
+    if begin_s >= end_s:
+        return ()
+    least_kw = fraction.value * evidence.starting_power_kw
+    return (level(kind, ACTIVE_POWER, "P back", (begin_s, end_s), lower=least_kw),)

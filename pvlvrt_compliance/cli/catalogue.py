@@ -4,7 +4,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from pvlvrt_compliance.cli.request import Job
+from pvlvrt_compliance.study.job import Job
 
 
 def show_tests(job: Job) -> int:

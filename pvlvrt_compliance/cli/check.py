@@ -4,8 +4,6 @@ from typing import Annotated
 
 import typer
 
-from pvlvrt_compliance.errors import UsageError
-
 _SAG, _SETTING, _OUTPUT = "One sag of your own", "Grid, weather, parameters", "Selection and output"
 
 _HELP = """
@@ -187,48 +185,56 @@ def check(
     del version  # acted on before this function is called
     if context.invoked_subcommand is not None:
         return None
-    from pvlvrt_compliance.cli.request import Request, SagRequest, prepare
+    from pvlvrt_compliance.study.job import Asked, make_job
 
-    request = Request(
+    asked = Asked(
         profiles=tuple(profiles or ()),
         controller=controller,
         mapping=mapping,
-        sag=None if sag is None else SagRequest(sag, phases, two_phase, sag_type, duration, point_on_wave, irradiance),
-        overrides={
-            "frequency_hz": frequency,
-            "cell_temperature_c": temperature,
-            "scr": scr,
-            "xr": xr,
-            "vector_group": transformer,
-        },
+        sag=sag,
+        phases=phases,
+        two_phase=two_phase,
+        sag_type=sag_type,
+        duration=duration,
+        point_on_wave=point_on_wave,
+        irradiance=irradiance,
+        frequency=frequency,
+        temperature=temperature,
+        scr=scr,
+        xr=xr,
+        transformer=transformer,
         events=events,
-        assignments=tuple(assignments or ()),
+        settings=tuple(assignments or ()),
         fidelity=fidelity,
-        patterns=tuple(tests or ()),
+        tests=tuple(tests or ()),
         include_long=include_long,
-        output=output,
-        csv=csv,
         waveforms=waveforms,
-        allow_unjudged=allow_unjudged,
-        exit_zero=exit_zero,
-        quiet=quiet,
-        command=context.obj or ("pvlvrt-check",),
     )
-    own = (phases, sag_type, duration, point_on_wave, irradiance)
-    if sag is None and (two_phase or any(value is not None for value in own)):
-        raise UsageError("--phases, --two-phase, --sag-type, --duration, --point-on-wave and --irradiance need --sag")
-    if sag is not None and tests:
-        raise UsageError("--test selects from the profile's own tests; it does not go with --sag")
-    if mapping is not None and controller is None:
-        raise UsageError("--mapping is for the ports of a controller of your own; it needs --controller")
-    job = prepare(request)
+    job = make_job(asked, _option)
     if list_only:
         from pvlvrt_compliance.cli.catalogue import show_tests
 
         return show_tests(job)
-    from pvlvrt_compliance.cli.execute import execute
+    from pvlvrt_compliance.cli.running import run
 
-    return execute(request, job)
+    return run(
+        job,
+        command=context.obj or ("pvlvrt-check",),
+        folder=output,
+        csv=csv,
+        allow_unjudged=allow_unjudged,
+        exit_zero=exit_zero,
+        quiet=quiet,
+        spell=_option,
+    )
+
+
+_OPTIONS = {"profiles": "--profile", "tests": "--test", "settings": "--set", "list_only": "--list"}
+"""Options whose name is not that of the field that they set."""
+
+
+def _option(field: str) -> str:
+    return _OPTIONS.get(field, f"--{field.replace('_', '-')}")
 
 
 check.__doc__ = _HELP

@@ -15,8 +15,8 @@ from pvlvrt_compliance.cli.check import check
 from pvlvrt_compliance.cli.schema import schema
 from pvlvrt_compliance.cli.telling import tell
 from pvlvrt_compliance.compiled.notes import tell_in_lines
+from pvlvrt_compliance.controllers.process.command import STOPS, become_the_command, leave, status_of, words_of
 from pvlvrt_compliance.errors import OutputError, PvlvrtError, UsageError
-from pvlvrt_compliance.processes import STOPS, become_the_command, leave, status_of, words_of
 from pvlvrt_compliance.texts import write_any_name
 
 USAGE_STATUS = 2

@@ -6,6 +6,6 @@ def schema() -> None:
 
     Example: pvlvrt-check schema > results.schema.json
     """
-    from pvlvrt_compliance.report.results_json import schema as schema_text
+    from pvlvrt_compliance.report.formats.results_json import schema as schema_text
 
     print(schema_text(), end="")

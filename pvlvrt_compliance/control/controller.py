@@ -18,6 +18,7 @@ from pvlvrt_compliance.control.modulator import ModulatorParams, modulate
 from pvlvrt_compliance.control.mppt import MpptParams, MpptState, mppt_step
 from pvlvrt_compliance.control.synchronisation import SynchronisationParams, SynchronisationState, synchronise
 from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.measured import Measured
 
 
 class Precision(NamedTuple):
@@ -48,15 +49,6 @@ class ControllerState(NamedTuple):
     dc_voltage: DcVoltageRegulatorState
     mppt: MpptState
     current: CurrentRegulatorState
-
-
-class Measured(NamedTuple):
-    """What the controller samples once a period."""
-
-    u_g_ab: complex  # grid voltage at the PCC (V)
-    i_ab: complex  # inverter current (A)
-    v_dc: float  # DC-link voltage (V)
-    i_pv: float  # current of the PV array (A)
 
 
 class ControllerSignals(NamedTuple):

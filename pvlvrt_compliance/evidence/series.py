@@ -121,9 +121,30 @@ class Series:
         return np.where(no_voltage, 0.0, self.current_positive_pu.reactive)
 
     @cached_property
+    def reactive_current_negative_pu(self) -> Samples:
+        """One-cycle reactive current of the negative sequence, above 0 when it lowers V-, shape (n,).
+
+        0 where V- is too little for it to be measured along: that V- passes through zero is no fault of anything.
+        """
+        no_voltage = self.voltage_negative_pu < self.thresholds.voltage_floor_pu.value
+        return np.where(no_voltage, 0.0, self.current_negative_pu.reactive)
+
+    @cached_property
+    def reactive_share(self) -> Samples:
+        """Share of the reactive current in the positive sequence's, shape (n,); NaN without voltage or current."""
+        active, reactive = self.current_positive_pu
+        total = np.hypot(active, reactive)
+        return np.divide(reactive, total, out=np.full_like(total, np.nan), where=total > 0)
+
+    @cached_property
     def current_pu(self) -> Samples:
         """Instantaneous phase currents, shape (3, n)."""
         return self.joined(lambda segment: np.stack(segment.three_phase("i"))) / self.nominal.phase_current_peak_a
+
+    @cached_property
+    def voltage_pu(self) -> Samples:
+        """Instantaneous phase-to-neutral voltages at the terminals, shape (3, n)."""
+        return self.joined(lambda segment: np.stack(segment.three_phase("u"))) / self.nominal.phase_voltage_peak_v
 
     @cached_property
     def current_positive_pu(self) -> SequenceCurrent:
@@ -229,6 +250,14 @@ class Series:
         """Frequency that one-cycle windows go by (Hz)."""
         if self._is_steady:
             return self.frequency_hz
+        number = next((k for k, own in enumerate(self.waveforms) if own is segment), None)
+        return self._steered_hz(segment) if number is None else self._steered_by_segment[number]
+
+    @cached_property
+    def _steered_by_segment(self) -> list[Samples]:
+        return [self._steered_hz(segment) for segment in self.waveforms]
+
+    def _steered_hz(self, segment: Segment) -> Samples:
         return steering_frequency(segment, "u", self.nominal.frequency_hz, self._floor_v)[0]
 
     def _one_cycle(self, series: Callable[[Segment], NDArray[Any]], cycles: int = 1) -> NDArray[Any]:

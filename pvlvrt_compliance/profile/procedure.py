@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, ValidatorFunctionWrapHandler, WrapValidator, model_validator
 
 from pvlvrt_compliance.data.marks import Fraction, Frozen, Marked, NotNegative, Number, Numbers, Positive
+from pvlvrt_compliance.profile.ids import ID_PATTERN
 from pvlvrt_compliance.profile.sequences import CornerTests, StepTable
 from pvlvrt_compliance.scenario.events import Event
 from pvlvrt_compliance.scenario.sag import PhaseNames, Sag
@@ -108,7 +109,7 @@ class TestRow(Marked):
 
     __test__ = False  # not a test class, whatever pytest thinks of the name
 
-    id: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")
+    id: str = Field(pattern=ID_PATTERN)
     title: str = ""
     clause: str = Field(min_length=1)
     sag: Sag = Field(default=Sag(depth=0), description="without it, only the events happen")

@@ -12,6 +12,7 @@ from pvlvrt_compliance.errors import UsageError, did_you_mean
 from pvlvrt_compliance.profile.catalogue import expand, make_scenario, sag_duration_s
 from pvlvrt_compliance.profile.corners import corner_rows
 from pvlvrt_compliance.profile.curves import Envelope
+from pvlvrt_compliance.profile.ids import ID_PATTERN
 from pvlvrt_compliance.profile.procedure import Conditions, Detection, Procedure, TestCase, TestRow, Windows
 from pvlvrt_compliance.profile.requirements import Kinds, Requirements, RideThrough, requirements_of
 from pvlvrt_compliance.profile.thresholds import STANDARD_THRESHOLDS, Thresholds
@@ -24,7 +25,7 @@ class Profile(Frozen):
     """A profile with its includes resolved."""
 
     schema_version: Literal[1]
-    id: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")
+    id: str = Field(pattern=ID_PATTERN)
     title: str = Field(min_length=1)
     requirements: Requirements
     conditions: Conditions

@@ -1,1 +1,1 @@
-"""One file a format, each `render(results)`."""
+"""Results for people and programs: one file a format, and what figures show."""

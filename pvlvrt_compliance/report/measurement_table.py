@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from pvlvrt_compliance.measure.quantities import ControllerBeliefs, MeasuredWindows, WindowMeasurements
 from pvlvrt_compliance.report.format import number
+from pvlvrt_compliance.results import ControllerBeliefs, MeasuredWindows, WindowMeasurements
 
 WINDOWS = ("before", "during", "after")
 

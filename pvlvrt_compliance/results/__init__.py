@@ -1,8 +1,10 @@
 """The one result of a run: table, HTML, JUnit, JSON and exit status are all made from it."""
 
+from pvlvrt_compliance.measure.quantities import ControllerBeliefs, MeasuredWindows, WindowMeasurements
 from pvlvrt_compliance.results.band import Band
 from pvlvrt_compliance.results.results import (
     SCHEMA_VERSION,
+    Finding,
     ProfileSummary,
     Rating,
     Results,
@@ -18,12 +20,16 @@ __all__ = [
     "UNSETTLED",
     "Band",
     "Bound",
+    "ControllerBeliefs",
+    "Finding",
+    "MeasuredWindows",
     "ProfileSummary",
     "Rating",
     "Results",
     "Status",
     "TestResult",
     "Verdict",
+    "WindowMeasurements",
     "conclude",
     "exit_status",
     "worst",

@@ -6,6 +6,8 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, model_validator
 
 VOLTAGE_POSITIVE, VOLTAGE_NEGATIVE, CURRENT = "voltage_positive_pu", "voltage_negative_pu", "current_pu"
 ACTIVE_POWER, REACTIVE_POWER, DC_VOLTAGE = "active_power_kw", "reactive_power_kvar", "dc_voltage_v"
+REACTIVE_CURRENT, REACTIVE_CURRENT_NEGATIVE = "reactive_current_pu", "reactive_current_negative_pu"
+REACTIVE_SHARE, FREQUENCY = "reactive_share", "frequency_hz"
 
 _VOLTAGE = ("voltage_", "_pu")
 
@@ -27,8 +29,9 @@ class Band(BaseModel):
     """What a quantity must not leave over a time: above ``lower``, below ``upper``, straight lines between the points.
 
     ``quantity`` names what is limited, as a figure's panel does: `voltage_positive_pu`, `voltage_negative_pu`,
-    `voltage_lowest_line_to_line_pu` and its like (`voltage_band`), `current_pu` (phase currents), `active_power_kw`,
-    `reactive_power_kvar` or `dc_voltage_v`.
+    `voltage_lowest_line_to_line_pu` and its like (`voltage_band`), `current_pu` (phase currents),
+    `reactive_current_pu` and `reactive_current_negative_pu` (one cycle, of a sequence), `reactive_share` (of the
+    positive sequence's current), `active_power_kw`, `reactive_power_kvar`, `dc_voltage_v` or `frequency_hz`.
     """
 
     model_config = ConfigDict(frozen=True, extra="ignore")
@@ -39,6 +42,10 @@ class Band(BaseModel):
     t_s: Line = Field(min_length=1, description="from the start of the record")
     lower: Line | None = None
     upper: Line | None = None
+    widened: bool = Field(default=False, description="the same limit as another of its name, with the tolerance")
+    region: str | None = Field(
+        default=None, description="mode of operation while the quantity is in it; none: it must not be left"
+    )
 
     @model_validator(mode="after")
     def _of_one_length(self) -> Self:

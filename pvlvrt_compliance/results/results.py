@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
@@ -70,6 +70,13 @@ class TestResult(_Frozen):
         return tuple(check.status for check in self.checks) or (self.status,)
 
 
+class Finding(NamedTuple):
+    """A verdict, and the test that it is of."""
+
+    test: TestResult
+    verdict: Verdict
+
+
 class ProfileSummary(_Frozen):
     """The profile that was judged against, as a report shows it."""
 
@@ -100,6 +107,19 @@ class Results(_Frozen):
         """Number of verdicts by status, those that occur, worst first."""
         found = [status for test in self.tests for status in test.statuses]
         return {status: found.count(status) for status in Status if status in found}
+
+    def verdicts(self) -> tuple[Finding, ...]:
+        """Every verdict with its test, in the order of the tests."""
+        return tuple(Finding(test, verdict) for test in self.tests for verdict in test.checks)
+
+    def worst_margin(self) -> Finding | None:
+        """The verdict that is nearest to failing, or the furthest from passing: by `Verdict.relative_margin`.
+
+        Of those that passed or failed; None where none of them has a margin.
+        """
+        found = [each for each in self.verdicts() if each.verdict.status in JUDGED]
+        margins = {k: m for k, each in enumerate(found) if (m := each.verdict.relative_margin) is not None}
+        return found[min(margins, key=margins.__getitem__)] if margins else None
 
     @property
     def nothing_judged(self) -> bool:

@@ -78,6 +78,16 @@ class Verdict(BaseModel):
             return False
         return self.status in JUDGED and abs(self.margin) < self.uncertainty
 
+    @property
+    def relative_margin(self) -> float | None:
+        """Margin as a share of the limit, so that those of different checks can be compared; negative when failed.
+
+        Of |limit| + tolerance, which is not 0 where the limit is (`active_power_support` demands 0 kW, within 10 kW).
+        None where there is no margin, or nothing to divide it by.
+        """
+        scale = abs(self.limit or 0.0) + self.tolerance
+        return None if self.margin is None or scale <= 0 else self.margin / scale
+
     @computed_field(description=_MARGINAL)
     def marginal(self) -> bool:
         """`is_marginal`, for programs that read the file."""

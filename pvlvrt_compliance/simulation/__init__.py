@@ -1,1 +1,1 @@
-"""Joins plant and controller at their two rates."""
+"""Joins plant, hardware and a controller, the bundled one or another by its door, at their two rates."""

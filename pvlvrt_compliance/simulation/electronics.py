@@ -3,28 +3,40 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
-from pvlvrt_compliance.control.controller import Measured
-from pvlvrt_compliance.control.delays import DelayLines, DelayParams, filled
-from pvlvrt_compliance.control.hardware import Hardware
-from pvlvrt_compliance.control.sensors import CHANNELS, SensorParams
-from pvlvrt_compliance.scenario.parameters import ControllerParameters, Parameters, SensorParameters
+from pvlvrt_compliance.control.parameters import ControllerParameters
+from pvlvrt_compliance.hardware.delays import DelayLines, DelayParams, filled
+from pvlvrt_compliance.hardware.hardware import Hardware
+from pvlvrt_compliance.hardware.parameters import SensorParameters
+from pvlvrt_compliance.hardware.sensors import CHANNELS, SensorParams
+from pvlvrt_compliance.measured import Measured
+from pvlvrt_compliance.parameter_group import PhaseValues
+from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.translate import Start
+
+
+def per_channel(u: PhaseValues | float, i: PhaseValues | float, v_dc: float, i_pv: float) -> NDArray[np.float64]:
+    """Numbers of `CHANNELS`, in their order; of voltages and currents one a phase, or one for all three."""
+    phases = {"u": u if isinstance(u, tuple) else (u,) * 3, "i": i if isinstance(i, tuple) else (i,) * 3}
+    named = {f"{name}_{phase}": x for name, of in phases.items() for phase, x in zip("abc", of, strict=True)}
+    named |= {"v_dc": v_dc, "i_pv": i_pv}
+    return np.array([named[channel] for channel in CHANNELS], dtype=np.float64)
+
+
+_MOST_NOISE = 2**20  # samples of sensor noise (43 s of control periods), after which it begins anew
 
 
 def sensor_params(s: SensorParameters) -> SensorParams:
     """Parameters of the sensors, channel by channel."""
-    ac = np.array([s.voltage_range_v] * 3 + [s.current_range_a] * 3)
-    dc = np.array([s.dc_voltage_range_v, s.pv_current_range_a])
-    low, high = np.concatenate([-ac, 0 * dc]), np.concatenate([ac, dc])
+    u, i = s.voltage_range_v, s.current_range_a
+    low, high = per_channel(-u, -i, 0.0, 0.0), per_channel(u, i, s.dc_voltage_range_v, s.pv_current_range_a)
     step = (high - low) / 2**s.adc_bits
     converts = s.adc_bits > 0
     return SensorParams(
-        gain=np.array([*s.voltage_gain, *s.current_gain, s.dc_voltage_gain, s.pv_current_gain]),
-        offset=np.array([*s.voltage_offset_v, *s.current_offset_a, s.dc_voltage_offset_v, s.pv_current_offset_a]),
-        noise=np.array(
-            [s.voltage_noise_v] * 3 + [s.current_noise_a] * 3 + [s.dc_voltage_noise_v, s.pv_current_noise_a]
-        ),
+        gain=per_channel(s.voltage_gain, s.current_gain, s.dc_voltage_gain, s.pv_current_gain),
+        offset=per_channel(s.voltage_offset_v, s.current_offset_a, s.dc_voltage_offset_v, s.pv_current_offset_a),
+        noise=per_channel(s.voltage_noise_v, s.current_noise_a, s.dc_voltage_noise_v, s.pv_current_noise_a),
         step=step if converts else 0 * step,
         low=low if converts else np.full(len(CHANNELS), -math.inf),
         high=high - step if converts else np.full(len(CHANNELS), math.inf),
@@ -48,7 +60,7 @@ def hardware_of(parameters: Parameters, start: Start, periods: int) -> Hardware 
     if s == SensorParameters() and delay == default:
         return None
     sensors = sensor_params(s)
-    rows = periods if sensors.noise.any() else 1
+    rows = min(periods, _MOST_NOISE) if sensors.noise.any() else 1
     return Hardware(
         sensors=sensors,
         lines=delay_lines_of(parameters, start),

@@ -11,11 +11,13 @@ from pvlvrt_compliance.errors import SimulationError
 from pvlvrt_compliance.plant import pv_array
 from pvlvrt_compliance.plant.grid import PlaybackTable
 from pvlvrt_compliance.plant.plant import PlantTables
-from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import busy_stretches
+from pvlvrt_compliance.simulation.columns import CHANNELS
 from pvlvrt_compliance.simulation.electronics import hardware_of
-from pvlvrt_compliance.simulation.loop import CHANNELS, COMPLETED, run, tripped_at_s
+from pvlvrt_compliance.simulation.loop import run
+from pvlvrt_compliance.simulation.outcome import COMPLETED, tripped_at_s
+from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.recorder import Busy, RecordingPlan, every_period, plan_of, with_settling
 from pvlvrt_compliance.simulation.translate import (
     control_period_s,
@@ -27,8 +29,6 @@ from pvlvrt_compliance.simulation.translate import (
 )
 from pvlvrt_compliance.waveforms import Segment, Waveforms
 from pvlvrt_compliance.waveforms.breaker import opened_at_s
-
-_MOST_NOISE = 2**20  # control periods of sensor noise (43 s), after which it begins anew
 
 
 def simulate(  # type: ignore[no-untyped-def]
@@ -114,13 +114,13 @@ def _run(  # type: ignore[no-untyped-def]
     settling = math.ceil(parameters.simulation.settling_s / T_reg)
     samples = np.empty((sum(plan.rows), len(CHANNELS)))
     start = steady_state(plant, tables.grid, controller, scenario, -settling * T_reg)
-    hardware = hardware_of(parameters, start, min(settling + int(plan.first[-1]), _MOST_NOISE))
+    hardware = hardware_of(parameters, start, settling + int(plan.first[-1]))
     state = start.controller
     if parameters.controller.precision == "single":
         state, controller = in_single_precision(state, controller)
-    outcome = run(start.plant, state, start.m, -settling, plant, tables, controller, hardware, plan, samples)
+    outcome = run(start.plant, state, start.m, -settling, plant, tables, controller, hardware, None, plan, samples)
     if outcome.status != COMPLETED:
-        raise SimulationError(f"a number stopped being finite at {outcome.periods * T_reg:.4f} s")
+        raise SimulationError(f"a number stopped being finite at {max(outcome.period, 0) * T_reg:.4f} s")
     return record_of(samples, plan, T_reg, tripped_at_s=tripped_at_s(outcome.plant, int(plan.first[-1]) * T_reg))
 
 

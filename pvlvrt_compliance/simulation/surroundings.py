@@ -18,9 +18,9 @@ from pvlvrt_compliance.plant.line import LineParams, LineTable
 from pvlvrt_compliance.plant.pv_array import STC_IRRADIANCE
 from pvlvrt_compliance.plant.weather import IrradianceTable
 from pvlvrt_compliance.scenario.events import Harmonic, Recording
-from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import LONG_AGO_S, entries, irradiance_points
+from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.space_vectors import clarke
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.recording import read_recording

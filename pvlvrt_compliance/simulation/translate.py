@@ -15,6 +15,7 @@ from pvlvrt_compliance.control.ddsrf_pll import DdsrfPllParams
 from pvlvrt_compliance.control.lvrt import LvrtParams
 from pvlvrt_compliance.control.modulator import ModulatorParams
 from pvlvrt_compliance.control.mppt import MpptParams
+from pvlvrt_compliance.control.parameters import ControllerParameters, PowerStrategy, SynchronisationName
 from pvlvrt_compliance.control.srf_pll import SrfPllParams
 from pvlvrt_compliance.control.synchronisation import SynchronisationParams
 from pvlvrt_compliance.kernel import plain
@@ -25,8 +26,8 @@ from pvlvrt_compliance.plant.plant import PlantParams, PlantState, PlantTables
 from pvlvrt_compliance.plant.protection import NO_TRIP, ProtectionParams, UndervoltageCurve, relays_at_rest
 from pvlvrt_compliance.plant.pv_array import STC_IRRADIANCE, PvParams
 from pvlvrt_compliance.plant.switched_bridge import DeviceParams, PeriodMean
-from pvlvrt_compliance.scenario.parameters import ControllerParameters, Parameters, PowerStrategy, SynchronisationName
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.surroundings import (
     grid_table,
     harmonic_table,

@@ -10,7 +10,7 @@ from typing import Any
 from pvlvrt_compliance import __version__
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.profile.profile import Profile
-from pvlvrt_compliance.scenario.parameters import Parameters
+from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.texts import all_printable, shell_word
 
 _LIBRARIES = ("numpy", "scipy", "numba", "pydantic", "plotly")
@@ -36,26 +36,42 @@ def created_at() -> datetime:
 def provenance(
     profiles: Sequence[Profile],
     parameters: Parameters,
-    command: Sequence[str],
+    command: Sequence[str] | str,
     created: datetime,
     controller: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Everything that decides the figures of a run, as `results.json` carries it.
 
-    ``controller`` says what a controller of the user's own is; without, it is the bundled one.
+    ``command`` is the words of a command line, or a text as it is. ``controller`` says what a controller of the user's
+    own is; without, it is the bundled one.
     """
     return {
         "created": created.isoformat(),
-        "command": " ".join(map(shell_word, command)),
+        "command": command if isinstance(command, str) else " ".join(map(shell_word, command)),
         "profile": ", ".join(profile.id for profile in profiles),
         "profile_digest": ", ".join(profile.digest for profile in profiles),
         **(all_printable(controller) if controller else _bundled()),
-        "versions": {
-            "pvlvrt-compliance": __version__,
-            "python": platform.python_version(),
-            **{name: version(name) for name in _LIBRARIES},
-        },
+        "versions": _versions(),
         "parameters": parameters.model_dump(mode="json"),
+    }
+
+
+def provenance_of_record(profile: Profile, record: Mapping[str, Any], created: datetime) -> dict[str, Any]:
+    """The same of a record that was judged as it was; ``record`` says which."""
+    return {
+        "created": created.isoformat(),
+        "profile": profile.id,
+        "profile_digest": profile.digest,
+        **all_printable(record),
+        "versions": _versions(),
+    }
+
+
+def _versions() -> dict[str, str]:
+    return {
+        "pvlvrt-compliance": __version__,
+        "python": platform.python_version(),
+        **{name: version(name) for name in _LIBRARIES},
     }
 
 

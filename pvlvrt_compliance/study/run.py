@@ -3,13 +3,14 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from pvlvrt_compliance.checks.evaluate import errored, evaluate
+from pvlvrt_compliance.checks.evaluate import errored, evidence_of, judge_record
 from pvlvrt_compliance.errors import PvlvrtError
+from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.results import TestResult
-from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.simulate import available_power_w, simulate
 from pvlvrt_compliance.simulation.translate import nominal_of
 from pvlvrt_compliance.waveforms import Waveforms
@@ -22,6 +23,7 @@ class Judged(NamedTuple):
 
     result: TestResult
     waveforms: Waveforms | None  # None when the simulation gave none
+    evidence: Evidence | None = None  # what the record was judged by; None where there is none
 
 
 def run_test(profile: Profile, test: TestCase, parameters: Parameters, simulator: Simulator = simulate) -> Judged:
@@ -35,4 +37,5 @@ def run_test(profile: Profile, test: TestCase, parameters: Parameters, simulator
     except (PvlvrtError, ArithmeticError) as error:
         return Judged(errored(profile, test, str(error)), None)
     nominal = nominal_of(parameters, test.scenario)
-    return Judged(evaluate(profile, test, waveforms, nominal, available_w), waveforms)
+    evidence = evidence_of(profile, test, waveforms, nominal, available_w)
+    return Judged(judge_record(profile, test, evidence), waveforms, evidence)

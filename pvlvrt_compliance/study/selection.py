@@ -1,6 +1,6 @@
 """Which tests of the profiles are run."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
@@ -16,10 +16,13 @@ class Assignment(NamedTuple):
     test: TestCase
 
 
-def select(found: Sequence[Assignment], patterns: Sequence[str]) -> tuple[Assignment, ...]:
+def select(
+    found: Sequence[Assignment], patterns: Sequence[str], spell: Callable[[str], str] = str
+) -> tuple[Assignment, ...]:
     """Tests whose id matches any of the shell-style patterns (``VD3*``), upper and lower case alike.
 
-    Without patterns, all of them. A pattern may begin with the profile's id and a dot.
+    Without patterns, all of them. A pattern may begin with the profile's id and a dot. ``spell`` says how a message
+    names the patterns (``tests``) and the list of all tests (``list_only``).
 
     Raises
     ------
@@ -32,7 +35,8 @@ def select(found: Sequence[Assignment], patterns: Sequence[str]) -> tuple[Assign
         if not any(_matches(item, pattern) for item in found):
             ids = [item.test.id for item in found]
             hint = did_you_mean(pattern, ids) or f"; the profile has {ids[0]} to {ids[-1]}" if ids else ""
-            raise UsageError(f"--test {pattern}: no test of this name{hint} (--list shows all)")
+            said = f"{spell('tests')} {pattern}: no test of this name{hint} ({spell('list_only')} shows all)"
+            raise UsageError(said)
     return tuple(item for item in found if any(_matches(item, pattern) for pattern in patterns))
 
 

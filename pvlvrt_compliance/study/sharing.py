@@ -5,8 +5,8 @@ from collections.abc import Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Self
 
-from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.study.run import Simulator
 from pvlvrt_compliance.study.selection import Assignment
 from pvlvrt_compliance.waveforms import Waveforms

@@ -7,17 +7,16 @@ in place, and clears away what it has only staged.
 import json
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from pvlvrt_compliance.errors import OutputError, UsageError, unwritable
 from pvlvrt_compliance.locks import Lock, holder_of, take_lock
+from pvlvrt_compliance.results.files import JUNIT, REPORT, RESULTS, WAVEFORMS
 from pvlvrt_compliance.study.placing import Placing, begun_in, in_order, remove, remove_empty
 
-WAVEFORMS = "waveforms"
 INTERRUPTED = "interrupted"
-RESULTS, JUNIT, REPORT = "results.json", "junit.xml", "report.html"
 
 _VERDICTS = (REPORT, JUNIT, RESULTS)  # results.json comes last and goes first: where it is, everything is
 _STAGING, _LOCK = ".unfinished-", ".unfinished.lock"
@@ -31,6 +30,8 @@ class OutputFolder:
     ----------
     folder : str
         As the user named it; made when it does not exist.
+    spell : callable
+        How whoever asks writes ``output``: a message names what he has typed.
 
     Raises
     ------
@@ -40,9 +41,10 @@ class OutputFolder:
         When there is no room for a file.
     """
 
-    def __init__(self, folder: str) -> None:
+    def __init__(self, folder: str, spell: Callable[[str], str] = str) -> None:
+        self._asked = spell("output")
         if not folder:
-            raise UsageError("--output: a folder is needed")
+            raise UsageError(f"{self._asked}: a folder is needed")
         self.folder = Path(folder)
         self.notes: list[str] = []  # what was found here and is worth telling
         self._made = [place for place in (self.folder, *self.folder.parents) if not place.exists()]
@@ -59,7 +61,7 @@ class OutputFolder:
         except OSError as error:
             self.discard()
             place = f" ({error.filename})" if error.filename and Path(error.filename) != self.folder else ""
-            said = f"--output {folder}: cannot be written: {error.strerror or error}{place}"
+            said = f"{self._asked} {folder}: cannot be written: {error.strerror or error}{place}"
             raise unwritable(said, error) from None
         except BaseException:
             self.discard()
@@ -180,7 +182,7 @@ class OutputFolder:
         if lock is None:
             holder = holder_of(self.folder / _LOCK)
             raise UsageError(
-                f"--output {self.folder}: another run{f' (process {holder})' if holder else ''} is writing there;"
+                f"{self._asked} {self.folder}: another run{f' (process {holder})' if holder else ''} is writing there;"
                 " wait for its end, or name another folder"
             )
         if not lock.is_certain:

@@ -32,8 +32,8 @@ def read_recording(path: Path, channels: Sequence[str]) -> Segment:
         raise UsageError(f"{path}: the samples are not evenly spaced in time ({error})") from None
 
 
-def read_waveforms(path: Path, channels: Sequence[str]) -> Waveforms:
-    """Read some channels of a file, with a segment for every change of the sampling step.
+def read_waveforms(path: Path, channels: Sequence[str] | None = None) -> Waveforms:
+    """Read a file, or some channels of it, with a segment for every change of the sampling step.
 
     Raises
     ------
@@ -44,13 +44,14 @@ def read_waveforms(path: Path, channels: Sequence[str]) -> Waveforms:
         t, columns = _read_comtrade(path) if path.suffix.lower() == ".cfg" else _read_csv(path)
     except (OSError, UnicodeDecodeError, ValueError, IndexError) as error:
         raise UsageError(f"{path}: cannot be read as a recording ({error})") from None
-    for name in channels:
+    names = tuple(columns) if channels is None else channels
+    for name in names:
         if name not in columns:
             raise UsageError(f"{path}: no channel {name!r}{did_you_mean(name, columns)}; it has {', '.join(columns)}")
     bounds = _bounds(t, path)
     return Waveforms(
         tuple(
-            Segment(float(t[i]), _step(t[i:j], path), {name: columns[name][i:j] for name in channels})
+            Segment(float(t[i]), _step(t[i:j], path), {name: columns[name][i:j] for name in names})
             for i, j in pairwise(bounds)
         )
     )
@@ -95,8 +96,9 @@ def _read_comtrade(path: Path) -> tuple[Samples, dict[str, Samples]]:
         ) from None
     record = Comtrade(use_double_precision=True)
     record.load(str(path))
-    columns = {
-        name: np.asarray(values, dtype=np.float64)
-        for name, values in zip(record.analog_channel_ids, record.analog, strict=True)
-    }
+    named = [
+        *zip(record.analog_channel_ids, record.analog, strict=True),
+        *zip(record.status_channel_ids, record.status, strict=True),
+    ]
+    columns = {name: np.asarray(values, dtype=np.float64) for name, values in named}
     return np.asarray(record.time, dtype=np.float64), columns

@@ -10,7 +10,7 @@ from collections import Counter
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-sys.path[:0] = [str(ROOT / "docs" / "mutations"), str(ROOT / "tests" / "adversary")]
+sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "adversary")]
 
 from trials import drawn, outcome_of  # noqa: E402
 

@@ -145,15 +145,15 @@ def feeds_power_in_sags(record: Record, levels: list[Level]) -> Iterator[str]:
             yield f"P of {low:.0f} kW where {due:.0f} are due after {level.begin_s:.3f} s"
 
 
-def goes_on_feeding(fraction: float, lowest_pu: float, *, apparent: bool) -> Sentence:
-    """In mandatory operation a share of the current before flows, from two cycles after a step on, less 0.08."""
+def goes_on_feeding(fraction: float, lowest_pu: float, *, apparent: bool, from_s: float) -> Sentence:
+    """In mandatory operation a share of the current before flows, from so long after a step on, less 0.08."""
 
     def fed(record: Record, levels: list[Level]) -> Iterator[str]:
         now = np.sqrt((record.phases_pu**2).mean(axis=0)) if apparent else record.phases_pu.max(axis=0)
         end_s = levels[0].begin_s - record.cycle_s
         before = now[record.between(end_s - 0.1, end_s)].mean()
         for level in levels:
-            inside = record.between(level.begin_s + 2 * record.cycle_s, level.end_s - 1e-3)
+            inside = record.between(level.begin_s + from_s, level.end_s - 1e-3)
             if level.normal or level.v_lowest < lowest_pu or not inside.any():
                 continue
             if (least := now[inside].min()) < (fraction - 0.08) * before:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pvlvrt_compliance
 
-_EXAMPLE = Path(pvlvrt_compliance.__file__).parent / "templates" / "controllers" / "python" / "controller.py"
+_EXAMPLE = Path(pvlvrt_compliance.__file__).parent / "controllers" / "templates" / "python" / "controller.py"
 _spec = importlib.util.spec_from_file_location("example_controller", _EXAMPLE)
 _example = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(_example)

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
+from pvlvrt_compliance.controllers.simulator import ForeignSimulator
 from pvlvrt_compliance.results import Status
-from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
-from slips import Slip, What, When
 from trials import CODES, GRIDS, Trial, drawn, outcome_of, right_trial
+from validation.mutations.slips import Slip, What, When
 
 SEED, DRAWS, PARTS = 11, 300, 4
 TWO = ((0.0, 0.25, "abc", 0.5), (0.55, 0.8, "abc", 0.7))

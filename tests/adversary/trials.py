@@ -9,13 +9,13 @@ import sentences as say
 from pvlvrt_compliance.profile import Profile, load_profile
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.results import Status, TestResult
-from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.simulation.parameters import parameters_from
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.study.run import Simulator, run_test
 from seen import Level, record_of
-from slips import NO_SLIP, Slip, What, When
-from wrong_controllers import wrong_run
+from validation.mutations.slips import NO_SLIP, Slip, What, When
+from validation.mutations.wrong_controllers import wrong_run
 
 
 class Code(NamedTuple):
@@ -73,7 +73,7 @@ CODES = {
             *_EVERYWHERE,
             say.feeds_from(0.12),
             say.comes_back(0.95, _a_second),
-            say.goes_on_feeding(0.50, 0.12, apparent=False),
+            say.goes_on_feeding(0.50, 0.12, apparent=False, from_s=0.067),
         ),
         0.4,
         frequency_hz=60.0,
@@ -83,7 +83,7 @@ CODES = {
             *_EVERYWHERE,
             say.feeds_from(0.66, after_a_pause_s=0.45),
             say.comes_back(0.80, lambda _: 0.4),
-            say.goes_on_feeding(0.80, 0.66, apparent=True),
+            say.goes_on_feeding(0.80, 0.66, apparent=True, from_s=0.034),
             say.steady_harmonics(0.06),
             say.no_direct_current(0.01),
         ),

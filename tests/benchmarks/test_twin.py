@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from pvlvrt_compliance.simulation import loop
+from pvlvrt_compliance.simulation.columns import CHANNELS
 
 pytestmark = pytest.mark.compiler
 
@@ -26,7 +27,7 @@ def test_twin_gives_the_waveforms_of_the_package(
     """Every channel of the C program's record equals the package's, and both end alike."""
     mine, theirs = (twin_module.arguments_of(twin_module.SCENARIOS[name]) for _ in range(2))
     outcome, other = loop.run(*mine), twin.run(theirs)
-    assert (outcome.status, outcome.periods, outcome.plant.trip) == (other.status, other.periods, other.plant.trip)
+    assert (outcome.status, outcome.period, outcome.plant.trip) == (other.status, other.period, other.plant.trip)
     apart = agreement.differences(mine.samples, theirs.samples)
     assert {channel: x for channel, x in apart.items() if x > agreement.TOLERANCE} == {}
 
@@ -37,9 +38,9 @@ def test_twin_gives_the_waveforms_of_the_package(
 )
 def test_difference_of_one_sample_is_noticed(agreement: ModuleType, channel: str, nominal: float) -> None:
     """One sample that is off by a part of nominal shows as that part, in its channel only."""
-    record = np.ones((5, len(loop.CHANNELS)))
+    record = np.ones((5, len(CHANNELS)))
     other = record.copy()
-    other[3, loop.CHANNELS.index(channel)] += 1e-3 * nominal
+    other[3, CHANNELS.index(channel)] += 1e-3 * nominal
     apart = agreement.differences(record, other)
     assert apart.pop(channel) == pytest.approx(1e-3)
     assert set(apart.values()) == {0.0}
@@ -47,6 +48,6 @@ def test_difference_of_one_sample_is_noticed(agreement: ModuleType, channel: str
 
 def test_sample_that_nobody_wrote_is_noticed(agreement: ModuleType) -> None:
     """A sample that is not a number counts as an infinite difference."""
-    record = np.ones((5, len(loop.CHANNELS)))
-    record[2, 0] = math.nan
+    record = np.ones((5, len(CHANNELS)))
+    record[2, CHANNELS.index("u_a_v")] = math.nan
     assert agreement.differences(record, record)["u_a_v"] == math.inf

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from demands import MARK
 
 from pvlvrt_compliance.checks.evaluate import evaluate
 from pvlvrt_compliance.data.marks import Number
@@ -184,7 +185,7 @@ def at(level: Level, t: np.ndarray) -> np.ndarray:
 
 def chosen(value: Any, name: str = "value") -> dict[str, Any]:
     """A number, or whatever stands under ``name``, with a mark."""
-    return {name: value, "confidence": "chosen", "source": "the test"}
+    return {name: value} | MARK
 
 
 def marked(kind: str, **numbers: Any) -> Requirement:
@@ -238,7 +239,7 @@ def _marked(item: Any) -> Any:
     """Numbers of a requirement with a mark each; tables carry their own."""
     if isinstance(item, dict):
         return item if "confidence" in item else {key: _marked(part) for key, part in item.items()}
-    return item if isinstance(item, str) else {"value": item, "confidence": "chosen", "source": "a test"}
+    return item if isinstance(item, str) else chosen(item)
 
 
 @pytest.fixture

@@ -223,7 +223,7 @@ def test_check_from_another_package(bench, tmp_path: Path, monkeypatch):
 def test_no_package_hides_behind_the_name_of_the_built_in_checks(bench, tmp_path: Path, monkeypatch):
     """What another package announces under the name of this one's entry is found all the same."""
     monkeypatch.syspath_prepend(tmp_path)
-    (tmp_path / "elsewhere.py").write_text(
+    (tmp_path / "next_door.py").write_text(
         "from pvlvrt_compliance.checks.api import Check, CustomRequirement, NotApplicable\n"
         "class Elsewhere(Check):\n"
         "    kind = 'elsewhere'\n"
@@ -232,10 +232,10 @@ def test_no_package_hides_behind_the_name_of_the_built_in_checks(bench, tmp_path
         "    def judge(self, requirement, evidence):\n"
         "        raise NotApplicable('found')\n"
     )
-    info = tmp_path / "elsewhere-1.dist-info"
+    info = tmp_path / "next_door-1.dist-info"
     info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: elsewhere\nVersion: 1\n")
-    (info / "entry_points.txt").write_text("[pvlvrt_compliance.checks]\nbuilt-in = elsewhere:Elsewhere\n")
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: next_door\nVersion: 1\n")
+    (info / "entry_points.txt").write_text("[pvlvrt_compliance.checks]\nbuilt-in = next_door:Elsewhere\n")
     file = tmp_path / "custom.toml"
     file.write_text(CUSTOM.format(kind="elsewhere"))
     assert bench(profile=load_profile(str(file)), q_sag_kvar=250).check("elsewhere").message == "found"

@@ -6,9 +6,9 @@ from pvlvrt_compliance.checks.evaluate import evaluate
 from pvlvrt_compliance.profile import load_profile
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.results import Status
-from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.parameters import parameters_from
 from pvlvrt_compliance.study.run import run_test
 from pvlvrt_compliance.waveforms.container import Segment, Waveforms
 

@@ -6,18 +6,18 @@ The limit begins with the first record that is written: what the simulator keeps
 import resource
 import sys
 
-from pvlvrt_compliance.cli import execute
 from pvlvrt_compliance.cli.main import main
+from pvlvrt_compliance.study import records
 
 
 def _limit_from_the_first_record_on(size):
-    right = execute.write_comtrade
+    right = records.write_comtrade
 
     def write_comtrade(*arguments, **keywords):
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
         return right(*arguments, **keywords)
 
-    execute.write_comtrade = write_comtrade
+    records.write_comtrade = write_comtrade
 
 
 if __name__ == "__main__":

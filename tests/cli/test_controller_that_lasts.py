@@ -12,7 +12,7 @@ from waiting import PATIENCE_S, wait_until
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells whose child an orphan was")
 
-CONTROLLER = Path(__file__).parents[1] / "simulation" / "doors" / "lasting.py"
+CONTROLLER = Path(__file__).parents[1] / "controllers" / "lasting.py"
 
 
 @pytest.fixture

@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pvlvrt_compliance.scenario.parameters import Parameters
+from pvlvrt_compliance.controllers.library import HEADER
+from pvlvrt_compliance.controllers.simulator import ForeignSimulator
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
-from pvlvrt_compliance.simulation.foreign_simulate import ForeignSimulator
+from pvlvrt_compliance.simulation.parameters import Parameters
 
 needs_gcc = pytest.mark.skipif(None in map(shutil.which, ("gcc", "make")), reason="gcc or make is not installed")
 needs_pythonfmu = pytest.mark.skipif(
@@ -126,9 +127,10 @@ def test_controllers_in_python_and_c_are_the_same(in_python, in_c, phases):
 
 
 def test_header_is_the_interface(command):
-    """The header that is printed declares what a controller exports."""
+    """The header that is printed is the one that examples are built with, and declares what a controller exports."""
     ended = command("controllers", "header")
     assert (ended.status, ended.err) == (0, "")
+    assert ended.out == HEADER.read_text("utf-8")
     for name in ("Model_GetInfo", "Model_CheckParameters", "Model_Initialize", "Model_Outputs", "Model_Terminate"):
         assert name in ended.out
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from pvlvrt_compliance.report import html
+from pvlvrt_compliance.report.formats import html
 from pvlvrt_compliance.study.store import OutputFolder
 from waiting import PATIENCE_S
 

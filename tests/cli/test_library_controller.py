@@ -11,7 +11,7 @@ import pvlvrt_compliance
 pytestmark = pytest.mark.compiler
 
 ROOT = Path(__file__).resolve().parents[2]
-INTERFACE = Path(pvlvrt_compliance.__file__).parent / "simulation" / "doors"
+INTERFACE = Path(pvlvrt_compliance.__file__).parent / "controllers" / "library"
 
 
 @pytest.fixture
@@ -63,7 +63,7 @@ def test_bug_is_red_and_its_mending_green(examples, program, reports):
 def misbehaving(examples):
     """The library that misbehaves."""
     library = examples / "libmisbehaving.so"
-    source = ROOT / "tests" / "simulation" / "doors" / "library" / "misbehaving.c"
+    source = ROOT / "tests" / "controllers" / "library" / "misbehaving.c"
     command = ["gcc", "-std=c99", "-shared", "-fPIC", f"-I{INTERFACE}", str(source), "-o", str(library), "-lm"]
     subprocess.run(command, check=True)
     return library

@@ -10,7 +10,7 @@ import pytest
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="names are text in Windows")
 
-MISBEHAVING = Path(__file__).parents[1] / "simulation" / "doors" / "misbehaving.py"
+MISBEHAVING = Path(__file__).parents[1] / "controllers" / "misbehaving.py"
 
 
 def _run(folder, *arguments, **environment):

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from pvlvrt_compliance.scenario.parameters import parameters_from
+from pvlvrt_compliance.simulation.parameters import parameters_from
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.study import run as study_run
 

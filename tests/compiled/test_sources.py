@@ -19,7 +19,6 @@ import pvlvrt_compliance
 from pvlvrt_compliance import kernel
 from pvlvrt_compliance.compiled.sources import Sources
 from pvlvrt_compliance.errors import UsageError
-from pvlvrt_compliance.simulation.foreign_loop import run_foreign
 from pvlvrt_compliance.simulation.loop import run
 
 PACKAGE = Path(pvlvrt_compliance.__file__).parent
@@ -32,7 +31,6 @@ from pathlib import Path
 import bundled
 from pvlvrt_compliance.kernel import plain, sources_of
 from pvlvrt_compliance.compiled.sources import Sources
-from pvlvrt_compliance.simulation.foreign_loop import run_foreign
 from pvlvrt_compliance.simulation.loop import run
 
 def now(entry):
@@ -48,7 +46,7 @@ def edited(entry, file):
         file.write_bytes(text)
 
 found = []
-for entry in (run, run_foreign, bundled.kept, bundled.advance):
+for entry in (run, bundled.kept, bundled.advance):
     sources = sources_of(entry)
     files = {module: Path(sources.file_of(module)) for module in sources.texts}
     others = [Path(file) for file in sys.argv[2:]]
@@ -68,7 +66,7 @@ def found(tmp_path_factory):
     copy = tmp_path_factory.mktemp("copy")
     package = copy / PACKAGE.name
     shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copy(HERE.parent / "simulation" / "doors" / "bundled.py", copy)
+    shutil.copy(HERE.parent / "controllers" / "bundled.py", copy)
     others = [
         package / name for name in ("errors.py", "checks/evaluate.py", "simulation/simulate.py", "compiled/keeping.py")
     ]
@@ -77,10 +75,10 @@ def found(tmp_path_factory):
     answer = subprocess.run(command, env=environment, cwd=copy, check=True, capture_output=True, text=True).stdout
     entries = json.loads(answer)
     assert all(file.startswith(str(copy)) for entry in entries for file in entry["files"].values())
-    return dict(zip(("run", "run_foreign", "kept", "advance"), entries, strict=True))
+    return dict(zip(("run", "kept", "advance"), entries, strict=True))
 
 
-ENTRIES = pytest.mark.parametrize("name", ["run", "run_foreign", "kept", "advance"])
+ENTRIES = pytest.mark.parametrize("name", ["run", "kept", "advance"])
 
 
 @ENTRIES
@@ -111,24 +109,18 @@ def test_every_block_is_a_source_of_an_entry(found):
 
 
 def test_sources_of_the_loop():
-    """What the bundled loop is made of: blocks, constants that only arithmetic uses, what has it compiled; no check."""
+    """What the loop is made of: blocks, constants that only arithmetic uses, what has it compiled; no check.
+
+    The one loop serves every controller. So the digest of the bundled one, which a report carries, goes by the compiled
+    side of a door as well, and a door's by the bundled blocks.
+    """
     modules = {module.removeprefix(f"{PACKAGE.name}.") for module in kernel.sources_of(run).texts}
     assert {"kernel", "control.lvrt", "plant.plant", "space_vectors", "sogi", "simulation.loop"} <= modules
-    assert {"control.precision", "control.synchronised", "simulation.recorder"} <= modules
-    assert not {"errors", "units", "simulation.foreign_loop", "simulation.exchange"} & modules
-
-
-def test_sources_of_the_loop_with_a_controller_from_outside():
-    """It has the plant of the bundled loop, and not its controller."""
-    modules = {module.removeprefix(f"{PACKAGE.name}.") for module in kernel.sources_of(run_foreign).texts}
-    assert {
-        "simulation.exchange",
-        "simulation.ports",
-        "simulation.native_call",
-        "plant.plant",
-        "space_vectors",
-    } <= modules
-    assert "control.lvrt" not in modules
+    assert {"hardware.precision", "control.precision", "control.synchronised", "measured"} <= modules
+    assert {"simulation.recorder", "simulation.columns", "simulation.controlling", "simulation.sample"} <= modules
+    door = {"call", "controller", "exchange", "native_call", "ports", "table"}
+    assert {f"simulation.door.{name}" for name in door} <= modules
+    assert not {"errors", "units", "controllers.run", "simulation.simulate", "simulation.translate"} & modules
 
 
 MACHINES = {

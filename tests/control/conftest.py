@@ -11,9 +11,9 @@ import pytest
 from pvlvrt_compliance.control.controller import ControllerParams
 from pvlvrt_compliance.control.synchronisation import SynchronisationState, locked
 from pvlvrt_compliance.control.synchronisation import synchronise as synchronise_step
-from pvlvrt_compliance.scenario.parameters import Parameters, parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.parameters import Parameters, parameters_from
 from pvlvrt_compliance.simulation.translate import controller_params
 
 

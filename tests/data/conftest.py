@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from pvlvrt_compliance.controllers.mapping.file import load_mapping
 from pvlvrt_compliance.errors import PvlvrtError
 from pvlvrt_compliance.profile import load_profile
 from pvlvrt_compliance.scenario.files import load_events
-from pvlvrt_compliance.simulation.doors.mapping_file import load_mapping
 
 
 class Kind(NamedTuple):

@@ -1,13 +1,8 @@
 """The page on the shipped grid codes: what it says of a profile beside the verdicts."""
 
-import importlib.util
-from pathlib import Path
-
-import pytest
-
 from pvlvrt_compliance.profile import load_profile
+from validation.grid_codes import page
 
-GENERATOR = Path(__file__).parents[2] / "docs" / "grid_codes" / "generate.py"
 PROFILE = """
 schema_version = 1
 id = "mine"
@@ -26,16 +21,7 @@ source = "a line"
 """
 
 
-@pytest.fixture(scope="module")
-def page():
-    """The generator of the page."""
-    spec = importlib.util.spec_from_file_location("grid_codes_page", GENERATOR)
-    generator = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(generator)
-    return generator
-
-
-def test_what_tests_demand(page):
+def test_what_tests_demand():
     """Tests that the inverter may leave are named, with what holds for all others."""
     (line, *_) = page.demanded(load_profile("dk-rfg"))
     assert line.startswith("- may trip where the limits let it go: `3ph-0.80-60s`, ")
@@ -43,13 +29,13 @@ def test_what_tests_demand(page):
     assert page.demanded(load_profile("es-po-12.3")) == []
 
 
-def test_least_current(page):
+def test_least_current():
     """How much current is the least, of which, and how sure that is."""
     words = "- least current in mandatory operation: 0.5 of the current before, of the phase with the most (chosen)."
     assert words in page.demanded(load_profile("nerc-prc-029"))
 
 
-def test_marks_of_rows_and_points(page, tmp_path):
+def test_marks_of_rows_and_points(tmp_path):
     """Every row and point with a mark of its own is told, and what a test must do by when."""
     file = tmp_path / "mine.toml"
     file.write_text(PROFILE, encoding="utf-8")

@@ -10,8 +10,8 @@ from pvlvrt_compliance.measure.fourier import component
 from pvlvrt_compliance.measure.power import instantaneous_power
 from pvlvrt_compliance.measure.summary import measure
 from pvlvrt_compliance.measure.windows import Span
-from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.parameters import parameters_from
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.simulation.translate import nominal_of
 

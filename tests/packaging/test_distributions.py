@@ -80,7 +80,11 @@ def test_wheel_has_every_source_profile_and_template(root, wheel_files):
 
 
 def _templates(root):
-    return [p for p in (root / _NAME / "templates").rglob("*") if p.is_file() and "__pycache__" not in p.parts]
+    return [
+        p
+        for p in (root / _NAME / "controllers" / "templates").rglob("*")
+        if p.is_file() and "__pycache__" not in p.parts
+    ]
 
 
 def test_wheel_has_nothing_else(wheel_files):
@@ -94,10 +98,9 @@ def test_wheel_has_nothing_else(wheel_files):
 
 
 def test_sdist_can_be_tested(root, sdist_files):
-    """The sdist carries tests and benchmarks besides what the wheel is made from."""
-    wanted = [
-        p for folder in ("tests", "profiles", "reports", "benchmarks", "examples") for p in (root / folder).rglob("*.*")
-    ]
+    """The sdist carries tests, and what they need, besides what the wheel is made from."""
+    folders = ("tests", "profiles", "reports", "benchmarks", "examples", "validation", "docs")
+    wanted = [p for folder in folders for p in (root / folder).rglob("*.*")]
     names = {p.relative_to(root).as_posix() for p in wanted if p.is_file() and not _is_left(p)}
     assert names - sdist_files == set()
     assert sdist_files >= {"README.md", "LICENSE", "pyproject.toml"}
@@ -138,9 +141,9 @@ def test_resources_of_a_wheel_are_its_own(installed, tmp_path):
     script = (
         "from pathlib import Path; import pvlvrt_compliance; from pvlvrt_compliance.resources import resource_folder;"
         "package = Path(pvlvrt_compliance.__file__).resolve().parent;"
-        "print([resource_folder(name) == package / name for name in ('profiles', 'reports', 'templates')])"
+        "print([resource_folder(name) == package / name for name in ('profiles', 'reports')])"
     )
-    assert _done(installed / "python", "-c", script, cwd=tmp_path).stdout.strip() == "[True, True, True]"
+    assert _done(installed / "python", "-c", script, cwd=tmp_path).stdout.strip() == "[True, True]"
 
 
 def test_project_from_a_wheel(installed, tmp_path):
@@ -175,7 +178,7 @@ def test_editable_install_uses_the_folders_of_the_checkout(installed, root, tmp_
     assert [Path(line) for line in found] == [root.resolve() / "profiles", root.resolve() / "reports"]
 
 
-@pytest.mark.parametrize("name", ["profiles", "reports", "templates"])
+@pytest.mark.parametrize("name", ["profiles", "reports"])
 def test_resources_of_these_tests(name):
     """However the package under test is installed, its folders have files."""
     assert any(resource_folder(name).iterdir())

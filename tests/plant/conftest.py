@@ -12,9 +12,9 @@ from pvlvrt_compliance.plant.plant import PlantState, advance
 from pvlvrt_compliance.plant.protection import NO_TRIP, relays_at_rest, relays_step, undervoltage_limit
 from pvlvrt_compliance.plant.pv_array import current_at
 from pvlvrt_compliance.plant.switched_bridge import PeriodMean
-from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.translate import plant_params, plant_tables
 
 

@@ -7,8 +7,8 @@ from pvlvrt_compliance.profile import load_profile
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.results import TestResult
-from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.study.run import run_test
 from pvlvrt_compliance.waveforms.container import Waveforms
 from pvlvrt_compliance.waveforms.csv import write_csv

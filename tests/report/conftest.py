@@ -8,9 +8,12 @@ import pytest
 
 from pvlvrt_compliance.disturbance.asked import disturbance_asked
 from pvlvrt_compliance.disturbance.model import NormalVoltage
+from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.measure.quantities import MeasuredWindows
 from pvlvrt_compliance.measure.summary import measure
-from pvlvrt_compliance.report import figure
+from pvlvrt_compliance.measure.windows import STANDARD_RULES
+from pvlvrt_compliance.report.drawing.model import Drawing
+from pvlvrt_compliance.report.drawing.of_test import drawing
 from pvlvrt_compliance.results import Band, ProfileSummary, Results, Status, TestResult, Verdict, conclude
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
@@ -174,6 +177,30 @@ def make_results() -> Callable[..., Results]:
 
 
 @pytest.fixture(scope="session")
-def make_figure(record: Waveforms, nominal: Nominal) -> Callable[[TestResult], dict[str, Any]]:
-    """Make the figure of a test from the common record."""
-    return lambda test: figure.test_figure(record, test, nominal)
+def make_evidence(nominal: Nominal) -> Callable[..., Evidence]:
+    """Make what a check sees of a record of a test: ``make_evidence(record, test)``."""
+
+    def make(record: Waveforms, test: TestResult) -> Evidence:
+        grid = test.disturbance
+        return Evidence(
+            waveforms=record,
+            nominal=nominal,
+            disturbance=grid,
+            available_power_w=500e3,
+            measurements=measure(record, nominal, grid.start_s, grid.clear_s),
+            rules=STANDARD_RULES,
+            blocked_below_pu=0.01,
+        )
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def make_drawing(record: Waveforms, make_evidence: Callable[..., Evidence]) -> Callable[..., Drawing]:
+    """Make the drawing of a test: ``make_drawing(test, record=the common one, **options)``."""
+    common = record
+
+    def make(test: TestResult, record: Waveforms = common, **options: Any) -> Drawing:
+        return drawing(make_evidence(record, test), test, **options)
+
+    return make

@@ -13,8 +13,9 @@ from rich.console import Console
 
 from draws import draws
 from pvlvrt_compliance.checks.check import decisive
-from pvlvrt_compliance.report import console, html, junit, results_json
+from pvlvrt_compliance.report import console
 from pvlvrt_compliance.report import format as spell
+from pvlvrt_compliance.report.formats import html, junit, results_json
 from pvlvrt_compliance.results import Results, Status, TestResult, Verdict, conclude, worst
 
 UNITS = ("kvar", "pu", "s", "%", "", "furlong")

@@ -10,8 +10,10 @@ from hypothesis import strategies as st
 
 from draws import draws
 from pvlvrt_compliance.profile import load_profile
-from pvlvrt_compliance.report import html
-from pvlvrt_compliance.report.profile_figure import render_html, render_svg
+from pvlvrt_compliance.report.drawing import page as drawn_page
+from pvlvrt_compliance.report.drawing import svg as drawn_svg
+from pvlvrt_compliance.report.drawing.of_profile import panels
+from pvlvrt_compliance.report.formats import html
 from pvlvrt_compliance.report.profile_words import render as render_words
 from pvlvrt_compliance.results import ProfileSummary
 
@@ -76,7 +78,7 @@ def test_figure_and_words_show_them(profile_of, title, source):
     words = render_words(profile)
     assert words.startswith(f"mine: {title}\n")
     assert f"[inferred] NTS 631 v2.0, Fig. 27; {source}\n" in words
-    svg = ET.fromstring(render_svg(profile))
+    svg = ET.fromstring(drawn_svg.render(profile.id, title, panels(profile)))
     assert next(svg.iter("{http://www.w3.org/2000/svg}title")).text == f"mine: {title}"
     assert not list(svg.iter("{http://www.w3.org/2000/svg}script"))
 
@@ -84,6 +86,7 @@ def test_figure_and_words_show_them(profile_of, title, source):
 def test_the_page_of_a_figure_shows_them(profile_of):
     """A title with markup is a text of the page."""
     title = "</title><script>alert(1)</script>"
-    page = lxml.html.document_fromstring(render_html(profile_of(title, "s")))
+    profile = profile_of(title, "s")
+    page = lxml.html.document_fromstring(drawn_page.render(profile.id, profile.title, panels(profile)))
     assert page.findtext(".//title") == f"mine: {title}"
     assert page.findtext(".//h1") == f"mine: {title}"

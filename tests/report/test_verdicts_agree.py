@@ -6,7 +6,8 @@ import lxml.html
 import pytest
 from rich.console import Console
 
-from pvlvrt_compliance.report import console, html, junit, results_json
+from pvlvrt_compliance.report import console
+from pvlvrt_compliance.report.formats import html, junit, results_json
 from pvlvrt_compliance.report.verdicts import findings
 from pvlvrt_compliance.results import Status, Verdict
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from pvlvrt_compliance.errors import UsageError
-from pvlvrt_compliance.report import junit
+from pvlvrt_compliance.report.formats import junit
 from pvlvrt_compliance.results import Band, Status
 from pvlvrt_compliance.results.reading import read_results
 

@@ -8,9 +8,9 @@ import pytest
 
 from pvlvrt_compliance.measure.quantities import MeasuredWindows
 from pvlvrt_compliance.measure.summary import measure
-from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.parameters import parameters_from
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.simulation.translate import nominal_of
 from pvlvrt_compliance.waveforms.container import Segment

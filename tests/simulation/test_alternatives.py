@@ -6,7 +6,7 @@ import pytest
 from pvlvrt_compliance.measure.fourier import component
 from pvlvrt_compliance.measure.power import instantaneous_power
 from pvlvrt_compliance.measure.sequences import sequence_phasors
-from pvlvrt_compliance.scenario.parameters import parameters_from
+from pvlvrt_compliance.simulation.parameters import parameters_from
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.space_vectors import clarke
 from pvlvrt_compliance.units import Nominal

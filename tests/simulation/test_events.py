@@ -8,9 +8,9 @@ import pytest
 from pvlvrt_compliance.measure.fourier import component
 from pvlvrt_compliance.measure.power import instantaneous_power
 from pvlvrt_compliance.measure.sequences import sequence_phasors
-from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.parameters import parameters_from
 from pvlvrt_compliance.simulation.simulate import simulate
 
 

@@ -10,10 +10,11 @@ import pytest
 
 from pvlvrt_compliance.measure.windows import standard_windows
 from pvlvrt_compliance.profile.loading import load_profile
-from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
-from pvlvrt_compliance.simulation.loop import record, record_phases
+from pvlvrt_compliance.simulation.columns import I as CURRENTS
+from pvlvrt_compliance.simulation.columns import put_phases, record_plant
+from pvlvrt_compliance.simulation.parameters import parameters_from
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.space_vectors import clarke
 from pvlvrt_compliance.study.run import run_test
@@ -25,16 +26,16 @@ I, U = math.sqrt(2) * 500e3 / 690, math.sqrt(2) * 230  # noqa: E741 - the symbol
 V_DROP, R_ON, R_FILTER, T_LOSS, T = 0.22, 0.5e-3, 1e-3, 24.76e-3 / 800e3, 40.9568e-6
 
 
-def record_means(row, x, y, s, G):
+def record_means(row, x, y, G):
     """Record the mean current of the period that has ended in the place of the sample."""
-    record(row, x, y, s, G)
-    record_phases(row, 6, x.mean.i, 0.0)
+    record_plant(row, x, y, G)
+    put_phases(row, CURRENTS, x.mean.i, 0.0)
 
 
 @pytest.fixture(scope="session")
 def recording_means(rebuild_loop):
     """Loop that records the mean current of each period."""
-    return rebuild_loop(record=record_means)
+    return rebuild_loop(record_plant=record_means)
 
 
 def rms(x) -> float:

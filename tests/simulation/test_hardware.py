@@ -3,14 +3,16 @@
 import numpy as np
 import pytest
 
+from pvlvrt_compliance.hardware.sensors import CHANNELS
 from pvlvrt_compliance.measure.fourier import component, mean
 from pvlvrt_compliance.measure.power import instantaneous_power
 from pvlvrt_compliance.measure.sequences import sequence_phasors
 from pvlvrt_compliance.profile import load_profile
 from pvlvrt_compliance.results import Status
-from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.electronics import sensor_params
+from pvlvrt_compliance.simulation.parameters import parameters_from
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.study.run import run_test
 
@@ -31,6 +33,33 @@ def run(*settings, depth=0.0, **fields):
 def before(segment):
     """Five cycles before the sag."""
     return segment.slice(0.18, 0.28)
+
+
+def test_every_setting_reaches_its_channel():
+    """Gains, offsets, noise and ranges are those of the channel that they name."""
+    of_phases, alone = "[2,3,4]", ("5", "6")
+    settings = [
+        *(f"sensors.{name}={of_phases}" for name in ("voltage_gain", "voltage_offset_v")),
+        *(f"sensors.{name}=[7,8,9]" for name in ("current_gain", "current_offset_a")),
+        *(f"sensors.{name}={x}" for name, x in zip(("dc_voltage_gain", "pv_current_gain"), alone, strict=True)),
+        *(f"sensors.{name}={x}" for name, x in zip(("dc_voltage_offset_v", "pv_current_offset_a"), alone, strict=True)),
+        *("sensors.voltage_noise_v=1", "sensors.current_noise_a=2", "sensors.dc_voltage_noise_v=3"),
+        *("sensors.pv_current_noise_a=4", "sensors.adc_bits=1", "sensors.voltage_range_v=11"),
+        *("sensors.current_range_a=12", "sensors.dc_voltage_range_v=13", "sensors.pv_current_range_a=14"),
+    ]
+    p = sensor_params(parameters_from(settings).sensors)
+    each = {"u_a": 2, "u_b": 3, "u_c": 4, "i_a": 7, "i_b": 8, "i_c": 9, "v_dc": 5, "i_pv": 6}
+    noise, ends = {"u": 1, "i": 2, "v_dc": 3, "i_pv": 4}, {"u": 11, "i": 12, "v_dc": 13, "i_pv": 14}
+
+    def per_kind(numbers):
+        return [numbers.get(name, numbers.get(name[0])) for name in CHANNELS]
+
+    assert list(p.gain) == list(p.offset) == [each[name] for name in CHANNELS]
+    assert list(p.noise) == per_kind(noise)
+    assert list(p.low) == [
+        0 if name in {"v_dc", "i_pv"} else -x for name, x in zip(CHANNELS, per_kind(ends), strict=True)
+    ]
+    assert list(p.high + p.step) == per_kind(ends)
 
 
 def test_ideal_hardware_changes_nothing():

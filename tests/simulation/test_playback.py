@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from pvlvrt_compliance.errors import UsageError
-from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.waveforms.comtrade import write_comtrade
 from pvlvrt_compliance.waveforms.container import Waveforms

@@ -6,11 +6,11 @@ from hypothesis import strategies as st
 from pvlvrt_compliance.checks.evaluate import evaluate
 from pvlvrt_compliance.profile import load_profile
 from pvlvrt_compliance.scenario.events import FrequencyRamp, Harmonic, Irradiance, VoltageProfile
-from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import busy_stretches
-from pvlvrt_compliance.simulation.loop import CHANNELS
+from pvlvrt_compliance.simulation.columns import CHANNELS
+from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.recorder import AFTER_S, BEFORE_S, LEAST_RATE_HZ, MOST_ROWS, plan_of
 from pvlvrt_compliance.simulation.simulate import available_power_w, simulate
 from pvlvrt_compliance.simulation.translate import nominal_of

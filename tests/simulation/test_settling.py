@@ -6,9 +6,9 @@ import pytest
 from pvlvrt_compliance.checks.evaluate import evaluate
 from pvlvrt_compliance.profile import load_profile
 from pvlvrt_compliance.profile.procedure import TestCase
-from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.parameters import parameters_from
 from pvlvrt_compliance.simulation.recorder import every_period, with_settling
 from pvlvrt_compliance.simulation.simulate import available_power_w, simulate
 from pvlvrt_compliance.simulation.translate import nominal_of

@@ -3,10 +3,10 @@ import pytest
 
 from pvlvrt_compliance.errors import SimulationError
 from pvlvrt_compliance.measure.power import instantaneous_power
-from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
-from pvlvrt_compliance.simulation.loop import CHANNELS
+from pvlvrt_compliance.simulation.columns import CHANNELS
+from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.simulate import available_power_w, simulate
 from pvlvrt_compliance.space_vectors import clarke
 

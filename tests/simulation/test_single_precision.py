@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from pvlvrt_compliance.measure.power import instantaneous_power
-from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
-from pvlvrt_compliance.simulation.loop import CHANNELS
+from pvlvrt_compliance.simulation.columns import CHANNELS
+from pvlvrt_compliance.simulation.parameters import parameters_from
 from pvlvrt_compliance.simulation.simulate import simulate
 
 NOMINAL_VA = 500e3

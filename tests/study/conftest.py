@@ -5,9 +5,9 @@ from functools import partial
 import pytest
 
 from pvlvrt_compliance.profile import load_profile
-from pvlvrt_compliance.scenario.parameters import parameters_from
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.simulation.loop import run as right_run
+from pvlvrt_compliance.simulation.parameters import parameters_from
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.study.run import run_test
 

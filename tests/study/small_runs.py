@@ -14,7 +14,7 @@ import xml.etree.ElementTree as ET
 from functools import cache
 from pathlib import Path
 
-from pvlvrt_compliance.report import html, junit, results_json
+from pvlvrt_compliance.report.formats import html, junit, results_json
 from pvlvrt_compliance.results import Results, Status, TestResult, Verdict, conclude
 from pvlvrt_compliance.study.store import JUNIT, REPORT, RESULTS, WAVEFORMS, OutputFolder
 

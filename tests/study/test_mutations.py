@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-import table
-from mutants import MUTANTS, RIGHT
 from pvlvrt_compliance.profile.requirements import BUILT_IN
-from unnoticed import UNNOTICED
+from validation.mutations import table
+from validation.mutations.mutants import MUTANTS, RIGHT
+from validation.mutations.unnoticed import UNNOTICED
 
 PAGE = (Path(__file__).parents[2] / "docs" / "mutations.md").read_text("utf-8")
 
@@ -37,7 +37,7 @@ def test_what_no_check_notices_is_left_open_by_a_text():
 
 
 def test_the_page_is_that_of_its_generator():
-    """The page has every row, and nothing but what `python docs/mutations/generate.py` writes of its table."""
+    """The page has every row, and nothing but what `python -m validation.mutations` writes of its table."""
     assert table.page(table.verdicts_in(PAGE)) == PAGE
 
 

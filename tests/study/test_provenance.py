@@ -8,7 +8,7 @@ import pytest
 
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.profile import load_profile
-from pvlvrt_compliance.scenario.parameters import Parameters, parameters_from
+from pvlvrt_compliance.simulation.parameters import Parameters, parameters_from
 from pvlvrt_compliance.study.provenance import created_at, provenance
 
 CREATED = datetime(2024, 2, 29, 12, tzinfo=UTC)

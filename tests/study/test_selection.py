@@ -59,7 +59,7 @@ def test_pattern_that_matches_nothing(pattern, hint):
 
 def test_profile_without_tests():
     """A pattern on a profile without tests is refused without a list of ids."""
-    with pytest.raises(UsageError, match="--test VD1: no test of this name"):
+    with pytest.raises(UsageError, match=r"^tests VD1: no test of this name"):
         select([], ["VD1"])
 
 

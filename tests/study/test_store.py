@@ -171,7 +171,7 @@ def test_one_run_at_a_time(begun):
     with pytest.raises(UsageError) as error:
         OutputFolder(str(begun))
     assert str(error.value) == (
-        f"--output {begun}: another run (process {os.getpid()}) is writing there;"
+        f"output {begun}: another run (process {os.getpid()}) is writing there;"
         " wait for its end, or name another folder"
     )
     output.finish()
@@ -265,5 +265,15 @@ def test_no_room_at_the_beginning(tmp_path, monkeypatch):
     monkeypatch.setattr(store.tempfile, "mkdtemp", fail)
     with pytest.raises(OutputError) as error:
         OutputFolder(str(tmp_path / "out"))
-    assert str(error.value) == f"--output {tmp_path / 'out'}: cannot be written: No space left on device"
+    assert str(error.value) == f"output {tmp_path / 'out'}: cannot be written: No space left on device"
     assert list(tmp_path.iterdir()) == []
+
+
+def test_messages_name_what_was_typed(tmp_path):
+    """The folder is called as whoever asks writes it."""
+    (tmp_path / "file").write_text("mine")
+    for folder, said in (("", ": a folder is needed"), (str(tmp_path / "file"), f" {tmp_path / 'file'}: cannot be")):
+        for spelled, spell in (("output", str), ("--output", "--{}".format)):
+            with pytest.raises(UsageError) as error:
+                OutputFolder(folder, spell)
+            assert str(error.value).startswith(f"{spelled}{said}")

@@ -3,7 +3,7 @@
 import pytest
 
 from pvlvrt_compliance.results import Status
-from wrong_controllers import Wrong, wrong_run
+from validation.mutations.wrong_controllers import Wrong, wrong_run
 
 SAGS = ("three-phase 90 %", "phase c 90 %", "phase c 50 %")
 AFTER_A_TRIP = {"active_power_support", "dc_ripple", "oscillation", "reactive_support", "return_to_prefault"}

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from pvlvrt_compliance.errors import SimulationError
-from pvlvrt_compliance.scenario.parameters import Parameters
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.parameters import Parameters
 
 PATIENCE_S = 500.0
 """What has not come by then will not come any more, on any machine (s)."""

@@ -1,10 +1,10 @@
-"""The computations behind docs/validation.md, as modules; `pythonpath` in pyproject.toml leads to them."""
+"""The figures behind docs/validation.md, held to what is expected of them."""
 
 from collections.abc import Callable, Iterable
 
 import pytest
 
-from evidence import Row
+from validation.simulator.evidence import Row
 
 
 @pytest.fixture(scope="session")

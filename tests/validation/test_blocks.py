@@ -1,8 +1,6 @@
 import pytest
 
-import blocks
-import frequency_lock
-import loops
+from validation.simulator import blocks, frequency_lock, loops
 
 
 def test_cells_have_their_transfer_functions(assert_within):

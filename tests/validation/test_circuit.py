@@ -1,8 +1,8 @@
 import pytest
 
-import circuit
-from pvlvrt_compliance.scenario.parameters import Parameters
-from records import record
+from pvlvrt_compliance.simulation.parameters import Parameters
+from validation.simulator import circuit
+from validation.simulator.records import record
 
 pytestmark = [
     pytest.mark.slow,

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-import closed_forms
+from validation.simulator import closed_forms
 
 pytestmark = pytest.mark.slow
 

@@ -1,9 +1,16 @@
 import pytest
 
-import distorted_grid
-import findings
-from distorted_grid import ANTIPHASE, GRIDS, IN_PHASE, NAMES, measured, on_distorted_grid, share_of_ripple
-from sequence_filters import frequency_ripple_hz, passed
+from validation.simulator import distorted_grid, findings
+from validation.simulator.distorted_grid import (
+    ANTIPHASE,
+    GRIDS,
+    IN_PHASE,
+    NAMES,
+    measured,
+    on_distorted_grid,
+    share_of_ripple,
+)
+from validation.simulator.sequence_filters import frequency_ripple_hz, passed
 
 pytestmark = pytest.mark.slow
 

@@ -1,6 +1,6 @@
 import pytest
 
-import findings
+from validation.simulator import findings
 
 FINDINGS = {
     "blind spot": findings.BLIND_SPOT,

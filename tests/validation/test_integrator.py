@@ -1,6 +1,6 @@
 import pytest
 
-import integrator
+from validation.simulator import integrator
 
 
 @pytest.mark.parametrize("name", integrator.CASES)

@@ -2,10 +2,9 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-import energy
-import invariants
 from draws import draws
-from records import record, without_trips
+from validation.simulator import energy, invariants
+from validation.simulator.records import record, without_trips
 
 THREE_MAGNITUDES = st.tuples(*[st.floats(0, 1.1)] * 3)
 THREE_ANGLES = st.tuples(*[st.floats(-0.5, 0.5)] * 3)

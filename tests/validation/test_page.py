@@ -4,9 +4,8 @@ from pathlib import Path
 
 import pytest
 
-import generate
-import page
-from evidence import Row, Section, at_most
+from validation.simulator import page
+from validation.simulator.evidence import Row, Section, at_most
 
 ROWS = (Row("crossover", 628.93, 610.4, 27.7, "Hz"), at_most("error", 3e-9, 1e-6, floor=1e-8), at_most("off", 2.0, 1.0))
 
@@ -43,8 +42,8 @@ def test_a_stale_page_is_noticed(old, new, stale):
 
 def test_the_page_has_every_drawing():
     """Each drawing that the page links to is there."""
-    text = generate.PAGE.read_text(encoding="utf-8")
+    text = page.PAGE.read_text(encoding="utf-8")
     files = re.findall(r"\]\((.*?\.svg)\)", text)
     assert len(files) > 10
-    assert all((generate.PAGE.parent / Path(file)).is_file() for file in files)
+    assert all((page.PAGE.parent / Path(file)).is_file() for file in files)
     assert "**no**" not in text

@@ -1,6 +1,6 @@
 import pytest
 
-import photovoltaics
+from validation.simulator import photovoltaics
 
 
 def test_the_array_is_that_of_table_1(assert_within):

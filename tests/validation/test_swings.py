@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-import swings
+from validation.simulator import swings
 
 
 def test_the_paper_s_control_swings_where_active_power_sets_in(assert_within):

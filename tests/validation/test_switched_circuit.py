@@ -1,10 +1,9 @@
 import numpy as np
 import pytest
 
-import circuit
-import switched_circuit
 from pvlvrt_compliance.simulation.translate import control_period_s
-from ripple import FINE
+from validation.simulator import circuit, switched_circuit
+from validation.simulator.ripple import FINE
 
 pytestmark = pytest.mark.slow
 

@@ -2,11 +2,9 @@ import math
 
 import pytest
 
-import findings
-import synchronism
-import weak_grids
 from pvlvrt_compliance.scenario.sag import Sag
-from weak_grids import LOST, Case, is_lost, judged_part, outcome
+from validation.simulator import findings, synchronism, weak_grids
+from validation.simulator.weak_grids import LOST, Case, is_lost, judged_part, outcome
 
 
 def test_a_weak_grid_carries_what_the_closed_form_says(assert_within):

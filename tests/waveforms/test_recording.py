@@ -62,3 +62,16 @@ def test_a_recording_with_a_pause_is_refused(tmp_path, second):
     path = written(Waveforms((stretch(0, 8000, 1), second)), tmp_path, "csv")
     with pytest.raises(UsageError, match="not evenly spaced"):
         read_recording(path, ["u_a_v"])
+
+
+@pytest.mark.parametrize("form", ["csv", "comtrade"])
+def test_a_whole_record_is_read_back(tmp_path, form):
+    """Without names of channels all come back, those that hold 0 or 1 too."""
+    closed = (np.arange(1000) < 500).astype(float)
+    was = Waveforms(
+        (Segment(0.0, DT_S, {"u_a_v": WHOLE[:1000], "connected": closed, "trip_cause": 3.0 * (1 - closed)}),)
+    )
+    (read,) = read_waveforms(written(was, tmp_path, form))
+    assert set(read.channels) == {"u_a_v", "connected", "trip_cause"}
+    assert np.array_equal(read["connected"], closed)
+    assert np.allclose(read["trip_cause"], 3.0 * (1 - closed))

@@ -46,7 +46,17 @@ def envelope_limits(requirement: RideThrough, evidence: Evidence) -> list[Limit]
 def envelope_bands(kind: str, requirement: RideThrough, evidence: Evidence) -> list[Band]:
     """The same envelopes as a figure draws them: anew from each instant that they count from."""
     tolerance_pu = requirement.envelope_tolerance_pu.value
-    return [_band(kind, *applied, tolerance_pu, evidence) for applied in _applied(requirement, evidence)]
+    bands = [_band(kind, *applied, tolerance_pu, evidence) for applied in _applied(requirement, evidence)]
+    return [*bands, *(_widened(band, tolerance_pu) for band in bands if tolerance_pu > 0)]
+
+
+def _widened(band: Band, by_pu: float) -> Band:
+    """The same with the tolerance, which a voltage that is let go must be beyond."""
+    edges = {
+        "lower": band.lower and tuple(max(level - by_pu, 0.0) for level in band.lower),
+        "upper": band.upper and tuple(level + by_pu for level in band.upper),
+    }
+    return band.model_copy(update={**edges, "widened": True})
 
 
 def _band(kind: str, envelope: Envelope, side: Side, by: str, tolerance_pu: float, evidence: Evidence) -> Band:

@@ -1,5 +1,6 @@
 """The inverter stays connected at the frequencies and through the rates of change that the code names."""
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -17,10 +18,12 @@ from pvlvrt_compliance.evidence.frequency import (
     largest_deviation,
 )
 from pvlvrt_compliance.measure.frequency import rocof_hz_s
+from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.profile.curves import Side
 from pvlvrt_compliance.profile.requirements import FrequencyRideThrough
 from pvlvrt_compliance.profile.tables import FrequencyBand
-from pvlvrt_compliance.results import Status, Verdict
+from pvlvrt_compliance.results import Band, Status, Verdict
+from pvlvrt_compliance.results.band import FREQUENCY
 from pvlvrt_compliance.waveforms.container import Samples
 
 KIND = "frequency_ride_through"
@@ -72,6 +75,29 @@ class FrequencyRideThroughCheck(Check):
             raise NotApplicable(f"{stop.how} while the voltage was not normal, which is judged by ride_through")
         return _judge_stop(requirement, stop, release, always, evidence, seen)
 
+    def limits(self, requirement: FrequencyRideThrough, evidence: Evidence) -> tuple[Band, ...]:
+        """Bands for ever over the whole record, others from where the frequency enters them, for their time."""
+        return tuple(_bands(requirement, evidence))
+
+
+def _bands(requirement: FrequencyRideThrough, evidence: Evidence) -> Iterator[Band]:
+    frequency, end_s = frequency_hz(evidence), evidence.waveforms.end_s
+    for row in requirement.bands.rows:
+        if row.ride_s is None:
+            yield _band(row, (evidence.waveforms.t0_s, end_s))
+        else:
+            side, near_hz = _near_edge(row, evidence)
+            for begin_s, _ in _excursions(evidence, frequency, side, near_hz):
+                yield _band(row, (begin_s, min(begin_s + row.ride_s, end_s)))
+
+
+def _band(row: FrequencyBand, span: tuple[float, float]) -> Band:
+    low, high = row.frequency_hz
+    mode, time = ("continuous", "") if row.ride_s is None else ("mandatory", f" for {row.ride_s:g} s")
+    name = f"stay connected{time}, {low:g} to {high:g} Hz"
+    edges = {"lower": (low, low), "upper": (high, high)}
+    return Band(check=KIND, quantity=FREQUENCY, name=name, t_s=span, region=mode, **edges)
+
 
 def _judge_stop(
     requirement: FrequencyRideThrough,
@@ -113,7 +139,6 @@ def _always(requirement: FrequencyRideThrough, evidence: Evidence) -> Demand:
 def _band_releases(requirement: FrequencyRideThrough, evidence: Evidence, frequency: Samples) -> list[Demand]:
     """What lets the inverter go: a band whose time is over, and frequencies beyond all bands at once."""
     rows = requirement.bands.rows
-    nominal_hz = evidence.nominal.frequency_hz
     low_hz, high_hz = rows[0].frequency_hz[0], rows[-1].frequency_hz[1]
     found = [
         _beyond(
@@ -139,13 +164,19 @@ def _band_releases(requirement: FrequencyRideThrough, evidence: Evidence, freque
     ]
     for row in rows:
         if row.ride_s is not None:
-            side = Side.LOW if row.frequency_hz[1] <= nominal_hz else Side.HIGH
-            near_hz = row.frequency_hz[1 if side is Side.LOW else 0]
+            side, near_hz = _near_edge(row, evidence)
             mark = requirement.bands.mark_of(row)
             found.append(
                 _beyond(requirement, evidence, frequency, side, near_hz, row.ride_s, _band_in_words(row), mark)
             )
     return [demand for demand in found if demand is not None]
+
+
+def _near_edge(row: FrequencyBand, evidence: Evidence) -> tuple[Side, float]:
+    """On which side of nominal a band lies, and its edge that is nearer to it (Hz)."""
+    if row.frequency_hz[1] <= evidence.nominal.frequency_hz:
+        return Side.LOW, row.frequency_hz[1]
+    return Side.HIGH, row.frequency_hz[0]
 
 
 def _band_in_words(row: FrequencyBand) -> str:
@@ -162,18 +193,20 @@ def _beyond(
     by: str,
     mark: Marked,
 ) -> Demand | None:
-    sign = 1 if side is Side.LOW else -1
-    found = excursions(
-        sign * (edge_hz - frequency) > evidence.thresholds.frequency_accuracy_hz.value,
-        evidence.t_s,
-        gap_s=1 / evidence.frequency_hz,
-    )
+    found = _excursions(evidence, frequency, side, edge_hz)
     spent_s = time_spent_s(found, evidence.t_s, None)
     free = np.flatnonzero(inside_of(found, evidence.t_s) & (spent_s >= ride_s))
     if not len(free):
         return None
     begun_s, uncertain_s = float(evidence.t_s[free[0]]) - ride_s, evidence.half_cycle_s
     return Demand(begun_s, ride_s, by, requirement.bands.clause, mark, uncertain_s)
+
+
+def _excursions(evidence: Evidence, frequency: Samples, side: Side, edge_hz: float) -> list[Span]:
+    """Where the frequency lies beyond an edge by more than it can be measured with."""
+    sign = 1 if side is Side.LOW else -1
+    beyond = sign * (edge_hz - frequency) > evidence.thresholds.frequency_accuracy_hz.value
+    return excursions(beyond, evidence.t_s, gap_s=1 / evidence.frequency_hz)
 
 
 def _rate(requirement: FrequencyRideThrough, evidence: Evidence) -> Samples | None:

@@ -8,14 +8,14 @@ import numpy as np
 from pvlvrt_compliance.checks.check import Check
 from pvlvrt_compliance.checks.connection.demand import Demand, failed_throughout, judged_stay
 from pvlvrt_compliance.checks.connection.letting_go import Stop, stop_of
-from pvlvrt_compliance.checks.recovery import judge_recovery
+from pvlvrt_compliance.checks.recovery import judge_recovery, recovery_band
 from pvlvrt_compliance.data.marks import marks_in
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
 from pvlvrt_compliance.evidence.frequency import ends_at_another_frequency
 from pvlvrt_compliance.evidence.stretches import between_steps_s, settling_s
 from pvlvrt_compliance.measure.fourier import ComplexSamples
 from pvlvrt_compliance.profile.requirements import PhaseJumpRideThrough
-from pvlvrt_compliance.results import Status, Verdict
+from pvlvrt_compliance.results import Band, Status, Verdict
 from pvlvrt_compliance.space_vectors import fortescue
 
 KIND = "phase_jump_ride_through"
@@ -81,6 +81,19 @@ class PhaseJumpRideThroughCheck(Check):
         if verdict.status is Status.FAIL and ends_at_another_frequency(evidence):
             raise NotApplicable("connected through every jump; the frequency ends elsewhere, and the power with it")
         return verdict
+
+    def limits(self, requirement: PhaseJumpRideThrough, evidence: Evidence) -> tuple[Band, ...]:
+        """The power that must be back after the last jump; of an inverter that let go, none."""
+        if stop_of(evidence) is not None or ends_at_another_frequency(evidence):
+            return ()
+        from_s = evidence.disturbance.angle_steps_s[-1]
+        return recovery_band(
+            KIND,
+            evidence,
+            from_s=from_s,
+            fraction=requirement.recovery_fraction,
+            time_s=requirement.recovery_time_s,
+        )
 
 
 def jump_at(evidence: Evidence, at_s: float) -> SeenJump:

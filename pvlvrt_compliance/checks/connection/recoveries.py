@@ -3,11 +3,12 @@
 from itertools import pairwise
 
 from pvlvrt_compliance.checks.check import decisive
-from pvlvrt_compliance.checks.recovery import judge_recovery
+from pvlvrt_compliance.checks.limits import of_each
+from pvlvrt_compliance.checks.recovery import judge_recovery, recovery_band
 from pvlvrt_compliance.data.marks import marks_in
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
 from pvlvrt_compliance.profile.requirements import RideThrough
-from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.results import Band, Verdict
 
 
 def judged_recovery(kind: str, requirement: RideThrough, evidence: Evidence) -> Verdict | None:
@@ -38,6 +39,17 @@ def judged_recovery(kind: str, requirement: RideThrough, evidence: Evidence) -> 
         except NotApplicable:
             continue
     return decisive(found) if found else None
+
+
+def recovery_bands(kind: str, requirement: RideThrough, evidence: Evidence) -> tuple[Band, ...]:
+    """The power that must be back after each return of the voltage, as a figure draws it."""
+    fraction, time_s = requirement.recovery_fraction, requirement.recovery_time_s
+    if fraction is None or time_s is None or evidence.disturbance.leaves_voltage_alone:
+        return ()
+    return of_each(
+        _returns(evidence),
+        lambda back: recovery_band(kind, evidence, from_s=back[0], until_s=back[1], fraction=fraction, time_s=time_s),
+    )
 
 
 def _returns(evidence: Evidence) -> list[tuple[float, float | None, str]]:

@@ -15,7 +15,12 @@ from pvlvrt_compliance.evidence.voltages import NAMES, Place, voltage_quantity_p
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.profile.curves import LARGEST_LEVEL_PU, Side
 from pvlvrt_compliance.profile.regions import LinearTime, Region, RegionTable
+from pvlvrt_compliance.profile.requirements import RideThrough
+from pvlvrt_compliance.results import Band
+from pvlvrt_compliance.results.band import voltage_band
 from pvlvrt_compliance.waveforms.container import Samples
+
+_TOP_PU, _LEAST_HEIGHT_PU = 1.4, 0.1  # where a region without an upper end ends in a figure
 
 
 class Visit(NamedTuple):
@@ -106,6 +111,49 @@ def _limit(table: RegionTable, visit: Visit, evidence: Evidence) -> Limit:
         return Limit(None, demand_at)
     first = free[0]
     return Limit(demand(float(evidence.t_s[first] - stay_s[first]), float(stay_s[first])), demand_at)
+
+
+def region_bands(kind: str, requirement: RideThrough, evidence: Evidence) -> list[Band]:
+    """Regions as a figure draws them: normal operation, and each that the voltage is in or beyond, as far as its time.
+
+    Where the voltage enters a region anew, its time counts from there; times that add up are cut by what was spent.
+    """
+    table = requirement.regions
+    if table is None:
+        return []
+    found = visits(table, requirement.envelope_tolerance_pu.value, evidence, "no_load")
+    whole = Span(evidence.disturbance.start_s, evidence.waveforms.end_s)
+    normal = _region_band(kind, table, table.continuous, whole.start_s, (whole.end_s, whole.end_s))
+    return [normal, *(band for visit in found for band in _visit_bands(kind, table, visit, evidence))]
+
+
+def _visit_bands(kind: str, table: RegionTable, visit: Visit, evidence: Evidence) -> Iterator[Band]:
+    spent_s = time_spent_s(list(visit.beyond), evidence.t_s, table.cumulative_window_s)
+    for begin_s, end_s in visit.beyond:
+        before_s = float(spent_s[min(int(np.searchsorted(evidence.t_s, begin_s)), len(spent_s) - 1)])
+        until_s = []
+        for u_pu in visit.region.voltage_pu:
+            ride_s = visit.region.ride_through_s(u_pu)
+            free_s = begin_s + max(ride_s - before_s, 0.0) if ride_s > 0 else end_s
+            until_s.append(min(free_s, evidence.waveforms.end_s))
+        yield _region_band(kind, table, visit.region, begin_s, (until_s[0], until_s[1]))
+
+
+def _region_band(kind: str, table: RegionTable, region: Region, begin_s: float, until_s: tuple[float, float]) -> Band:
+    """One region from an instant until its time is over: at its lower and at its upper voltage (s)."""
+    low, high = region.voltage_pu[0], min(region.voltage_pu[1], max(_TOP_PU, region.voltage_pu[0] + _LEAST_HEIGHT_PU))
+    at_low_s, at_high_s = until_s
+    first_ends_low = at_low_s <= at_high_s
+    side = table.low_quantity if table.side_of(region) is Side.LOW else table.high_quantity
+    return Band(
+        check=kind,
+        quantity=voltage_band(side),
+        name=f"{region.mode.replace('_', ' ')}, {region.voltage_pu[0]:g} to {region.voltage_pu[1]:g}",
+        t_s=(begin_s, *sorted(until_s)),
+        lower=(low, low, high if first_ends_low else low),
+        upper=(high, high, high if first_ends_low else low),
+        region=region.mode,
+    )
 
 
 def _stay_s(region: Region, voltage_pu: Samples) -> Samples:

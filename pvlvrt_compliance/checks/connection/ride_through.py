@@ -7,8 +7,8 @@ from pvlvrt_compliance.checks.connection.demand import Demand, judged_stay
 from pvlvrt_compliance.checks.connection.envelopes import envelope_bands
 from pvlvrt_compliance.checks.connection.feeding import least_current, without_current
 from pvlvrt_compliance.checks.connection.letting_go import stop_of
-from pvlvrt_compliance.checks.connection.recoveries import judged_recovery
-from pvlvrt_compliance.checks.connection.regions import Visit, visits
+from pvlvrt_compliance.checks.connection.recoveries import judged_recovery, recovery_bands
+from pvlvrt_compliance.checks.connection.regions import Visit, region_bands, visits
 from pvlvrt_compliance.checks.connection.release import Limits, limits_of, released_at_s
 from pvlvrt_compliance.checks.connection.responses import responses
 from pvlvrt_compliance.checks.connection.trips import judged_trip
@@ -59,8 +59,10 @@ class RideThroughCheck(Check):
         return released_at_s(requirement, evidence)
 
     def limits(self, requirement: RideThrough, evidence: Evidence) -> tuple[Band, ...]:
-        """The envelopes that apply to the record."""
-        return tuple(envelope_bands(KIND, requirement, evidence))
+        """The envelopes and the regions that apply to the record, and the power that must be back."""
+        regions = [] if requirement.regions is None else region_bands(KIND, requirement, evidence)
+        recovery = () if stop_of(evidence) is not None else recovery_bands(KIND, requirement, evidence)
+        return (*regions, *envelope_bands(KIND, requirement, evidence), *recovery)
 
 
 def _reported(verdicts: list[Verdict]) -> Verdict:

@@ -5,7 +5,6 @@ the positive sequence, down in the negative one. delta u therefore counts what V
 by, so that the one formula holds for both, and for a swell too, where all of it is negative.
 """
 
-import math
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -17,6 +16,7 @@ from pvlvrt_compliance.checks.current.idle import (
     is_blocked,
     let_off_if_blocked,
 )
+from pvlvrt_compliance.checks.limits import level, of_each
 from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
 from pvlvrt_compliance.data.marks import Marked
 from pvlvrt_compliance.disturbance.model import Stretch
@@ -24,8 +24,9 @@ from pvlvrt_compliance.evidence.evidence import ANY_LIGHT, Evidence, NotApplicab
 from pvlvrt_compliance.measure.quantities import WindowMeasurements
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.profile.requirements import ReactiveCurrent
-from pvlvrt_compliance.profile.requirements.current import DeadBandMode
-from pvlvrt_compliance.results import Status, Verdict
+from pvlvrt_compliance.profile.requirements.current import beyond_dead_band
+from pvlvrt_compliance.results import Band, Status, Verdict
+from pvlvrt_compliance.results.band import REACTIVE_CURRENT, REACTIVE_CURRENT_NEGATIVE
 from pvlvrt_compliance.waveforms.container import Samples
 
 
@@ -50,7 +51,7 @@ class _Asked(NamedTuple):
     as_in_swell: bool  # more support is less reactive current; not where the voltage is what it was but for rounding
 
 
-class _Band(NamedTuple):
+class _Due(NamedTuple):
     """Where the additional reactive current must lie (pu)."""
 
     low: float
@@ -77,6 +78,11 @@ class _SequenceCheck(StretchCheck):
         """
         return _judge(self.sequence, requirement, evidence, evidence.window_of(stretch, despite=ANY_LIGHT))
 
+    def limits(self, requirement: ReactiveCurrent, evidence: Evidence) -> tuple[Band, ...]:
+        """The band that the mean must lie in, with what flowed before, over each window."""
+        windows = evidence.windows_of(self.stretches(requirement, evidence), despite=ANY_LIGHT)
+        return of_each(windows, lambda window: [_drawn(self.sequence, requirement, evidence, window)])
+
 
 class ReactiveCurrentCheck(_SequenceCheck):
     """Judges the reactive current that the inverter adds to raise V+ in a sag, against K times what V+ fell by."""
@@ -94,6 +100,18 @@ class NegativeSequenceCurrentCheck(_SequenceCheck):
     sequence = NEGATIVE
 
 
+def _drawn(sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence, window: WindowMeasurements) -> Band:
+    band = _band(_asked(sequence, requirement, evidence, window), requirement, _is_event(evidence, window))
+    before = reactive_before(sequence, evidence)
+    quantity = REACTIVE_CURRENT if sequence is POSITIVE else REACTIVE_CURRENT_NEGATIVE
+    name, span = f"due, {sequence.name} sequence", (window.start_s, window.end_s)
+    return level(sequence.kind, quantity, name, span, lower=before + band.low, upper=before + band.high)
+
+
+def _is_event(evidence: Evidence, window: WindowMeasurements) -> bool:
+    return bool(evidence.is_event(np.asarray(required(window.voltage_positive_pu, "V+"))))
+
+
 def _judge(sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence, window: WindowMeasurements) -> Verdict:
     let_off_if_blocked(evidence, window, requirement.blocking_allowed_below_pu.value)
     if sequence is POSITIVE:
@@ -102,7 +120,7 @@ def _judge(sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence,
     else:
         _need_negative(evidence, window)
     asked = _asked(sequence, requirement, evidence, window)
-    event = bool(evidence.is_event(np.asarray(required(window.voltage_positive_pu, "V+"))))
+    event = _is_event(evidence, window)
     verdict = _judge_band(sequence, requirement, evidence, window, asked, event)
     is_due = event and asked.clipped_pu != 0
     if verdict.status is Status.PASS and is_due and is_blocked(evidence, window):
@@ -170,9 +188,7 @@ def _voltage(sequence: Sequence, window: WindowMeasurements) -> float:
 def _reactive_series(sequence: Sequence, evidence: Evidence) -> Samples:
     if sequence is POSITIVE:
         return evidence.current_positive_pu.reactive
-    # A V- that passes through zero is no fault of anything; without it there is no reactive current of the sequence.
-    no_voltage = evidence.voltage_negative_pu < evidence.thresholds.voltage_floor_pu.value
-    return np.where(no_voltage, 0.0, evidence.current_negative_pu.reactive)
+    return evidence.reactive_current_negative_pu
 
 
 def reactive_before(sequence: Sequence, evidence: Evidence) -> float:
@@ -221,7 +237,7 @@ def additional_current(sequence: Sequence, evidence: Evidence, span: Span) -> tu
     return t_s, current - reactive_before(sequence, evidence)
 
 
-def _band(asked: _Asked, requirement: ReactiveCurrent, event: bool) -> _Band:
+def _band(asked: _Asked, requirement: ReactiveCurrent, event: bool) -> _Due:
     """Around the demand, from tolerance to tolerance; ``tolerance_plus_pu`` is on the side of more support.
 
     Above the threshold of detection there is no fault and nothing is demanded (NTS 631, 5.11.2.2.4: its windows count
@@ -234,9 +250,9 @@ def _band(asked: _Asked, requirement: ReactiveCurrent, event: bool) -> _Band:
     demand = asked.clipped_pu
     words = f"{demand:+.3f} pu for a change of the voltage by {asked.delta_u_pu:+.3f} pu"
     if event:
-        return _Band(demand - below, demand + above, f"demanded are {words}")
+        return _Due(demand - below, demand + above, f"demanded are {words}")
     words = f"without a voltage event nothing is demanded, allowed are {words}"
-    return _Band(min(demand, 0.0) - below, max(demand, 0.0) + above, words)
+    return _Due(min(demand, 0.0) - below, max(demand, 0.0) + above, words)
 
 
 def _asked(sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence, window: WindowMeasurements) -> _Asked:
@@ -270,16 +286,6 @@ def _unclipped(
     k = evidence.k_factor or requirement.k.value
     demand = k * beyond_dead_band(delta_u, requirement.dead_band_pu.value, requirement.dead_band_mode.value)
     return delta_u, reactive_before(sequence, evidence), demand
-
-
-def beyond_dead_band(delta_u_pu: float, dead_band_pu: float, mode: DeadBandMode) -> float:
-    """Return f(delta u) of the three readings of a dead band (pu)."""
-    if mode == "none":
-        return delta_u_pu
-    exceeding = max(abs(delta_u_pu) - dead_band_pu, 0.0)
-    if mode == "shift":
-        return math.copysign(exceeding, delta_u_pu)
-    return delta_u_pu if exceeding > 0 else 0.0
 
 
 def _rests_on(requirement: ReactiveCurrent, asked: _Asked, is_more: bool) -> tuple[Marked, ...]:

@@ -1,10 +1,13 @@
 """During a sag the current is reactive in the share that the voltage asks for."""
 
+from collections.abc import Iterator
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from pvlvrt_compliance.checks.check import StretchCheck
+from pvlvrt_compliance.checks.limits import along, of_each
 from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
 from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require_finite
@@ -12,7 +15,8 @@ from pvlvrt_compliance.evidence.no_load import no_load_series_pu
 from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.evidence.stretches import surely_over_s
 from pvlvrt_compliance.profile.requirements import ReactiveRatio
-from pvlvrt_compliance.results import Status, Verdict
+from pvlvrt_compliance.results import Band, Status, Verdict
+from pvlvrt_compliance.results.band import REACTIVE_SHARE
 from pvlvrt_compliance.waveforms.container import Samples
 
 KIND = "reactive_ratio"
@@ -49,6 +53,17 @@ class ReactiveRatioCheck(StretchCheck):
             raise NotApplicable("the current is too little for a share, and the grid leaves no room for more")
         return _judge_share(requirement, evidence, seen.where(seen.has_share))
 
+    def limits(self, requirement: ReactiveRatio, evidence: Evidence) -> tuple[Band, ...]:
+        """The share that is demanded at each instant, and the same less the tolerance."""
+
+        def bands(stretch: Stretch) -> Iterator[Band]:
+            seen = _seen(requirement, evidence, stretch)
+            draw = partial(along, KIND, REACTIVE_SHARE, "share demanded", seen.t_s)
+            yield draw(lower=seen.demanded)
+            yield draw(lower=seen.demanded - requirement.tolerance.value, widened=True)
+
+        return of_each(self.stretches(requirement, evidence), bands)
+
 
 class _Seen(NamedTuple):
     """Instants at which a share counts, and what was measured there; shape (n,) each."""
@@ -58,6 +73,7 @@ class _Seen(NamedTuple):
     demanded: Samples  # share
     reactive_pu: Samples  # not a number where there is no voltage
     total_pu: Samples
+    share: Samples
     least_pu: Samples  # total current that is due
     no_load_pu: Samples  # V+
     has_room: Mask  # whether V+ and V- of the grid differ by enough for a current to be due
@@ -94,6 +110,7 @@ def _seen(requirement: ReactiveRatio, evidence: Evidence, stretch: Stretch) -> _
         demanded=demanded,
         reactive_pu=reactive,
         total_pu=np.hypot(active, reactive),
+        share=evidence.reactive_share[inside],
         least_pu=_least_pu(requirement, evidence, demanded),
         no_load_pu=positive,
         has_room=positive - negative >= evidence.thresholds.least_difference_pu.value,
@@ -160,7 +177,7 @@ def _too_little_current(requirement: ReactiveRatio, evidence: Evidence, seen: _S
 
 
 def _judge_share(requirement: ReactiveRatio, evidence: Evidence, seen: _Seen) -> Verdict:
-    share = seen.reactive_pu / seen.total_pu
+    share = seen.share
     worst = int((share - seen.demanded).argmin())
     demanded, tolerance = float(seen.demanded[worst]), requirement.tolerance.value
     limit = demanded - tolerance

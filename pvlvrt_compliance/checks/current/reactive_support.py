@@ -1,11 +1,13 @@
 """The inverter supports the voltage with the reactive power that the curve demands, at each level of the voltage."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 
 from pvlvrt_compliance.checks.check import StretchCheck
 from pvlvrt_compliance.checks.current.idle import destroyed_voltage
+from pvlvrt_compliance.checks.limits import level
 from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
 from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.evidence.evidence import ANY_LIGHT, Evidence, NotApplicable, require_finite, required
@@ -46,11 +48,9 @@ class ReactiveSupportCheck(StretchCheck):
         return _judge_support(requirement, evidence, window)
 
     def limits(self, requirement: ReactiveSupport, evidence: Evidence) -> tuple[Band, ...]:
-        """What is demanded in each window, less the tolerance; without support, the tolerance on either side."""
-        return tuple(
-            _band(requirement, evidence, window)
-            for window in evidence.windows_of(self.stretches(requirement, evidence), despite=ANY_LIGHT)
-        )
+        """What is demanded in each window, and the same less the tolerance; without support, that on either side."""
+        windows = evidence.windows_of(self.stretches(requirement, evidence), despite=ANY_LIGHT)
+        return tuple(band for window in windows for band in _bands(requirement, evidence, window))
 
 
 def _let_off_with_a_set_point(requirement: ReactiveSupport, evidence: Evidence, window: WindowMeasurements) -> None:
@@ -60,16 +60,16 @@ def _let_off_with_a_set_point(requirement: ReactiveSupport, evidence: Evidence, 
         raise NotApplicable(f"between sags the reactive power is that of normal operation: {before:.1f} kvar before")
 
 
-def _band(requirement: ReactiveSupport, evidence: Evidence, window: WindowMeasurements) -> Band:
+def _bands(requirement: ReactiveSupport, evidence: Evidence, window: WindowMeasurements) -> Iterator[Band]:
     v_positive = required(window.voltage_positive_pu, "V+")
     tolerance = _tolerance_kvar(requirement, evidence, v_positive)
-    span = (window.start_s, window.end_s)
+    draw = partial(level, KIND, REACTIVE_POWER, "limit of Q", (window.start_s, window.end_s))
     if v_positive >= requirement.no_support_from_pu.value:
-        edges = {"lower": (-tolerance, -tolerance), "upper": (tolerance, tolerance)}
+        yield draw(lower=-tolerance, upper=tolerance)
     else:
-        least = _demanded_kvar(requirement, evidence, window) - tolerance
-        edges = {"lower": (least, least)}
-    return Band(check=KIND, quantity=REACTIVE_POWER, name="limit of Q", t_s=span, **edges)
+        due = _demanded_kvar(requirement, evidence, window)
+        yield draw(lower=due)
+        yield draw(lower=due - tolerance, widened=True)
 
 
 def demanded_pu(requirement: ReactiveSupport, v_positive_pu: float, v_negative_pu: float) -> float:

@@ -1,5 +1,6 @@
 """The additional reactive current of the positive sequence comes and settles in time."""
 
+from collections.abc import Iterator
 from functools import partial
 from typing import NamedTuple
 
@@ -18,6 +19,7 @@ from pvlvrt_compliance.checks.current.reactive_current import (
     mean_additional,
     reactive_before,
 )
+from pvlvrt_compliance.checks.limits import level, of_each
 from pvlvrt_compliance.checks.parts import Part, judged_by_parts
 from pvlvrt_compliance.data.marks import Marked, Number
 from pvlvrt_compliance.disturbance.model import Stretch
@@ -28,7 +30,8 @@ from pvlvrt_compliance.measure.response import first_reached, last_entry
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.profile.procedure import Detection
 from pvlvrt_compliance.profile.requirements import ReactiveCurrent, SupportDynamics
-from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.results import Band, Verdict
+from pvlvrt_compliance.results.band import REACTIVE_CURRENT
 from pvlvrt_compliance.waveforms.container import Samples
 
 KIND = "support_dynamics"
@@ -73,10 +76,32 @@ class SupportDynamicsCheck(StretchCheck):
             return destroyed
         if demand is None and is_blocked(evidence, window):
             return blocked_where_due(KIND, requirement, evidence, window, (requirement.activation_pu,))
-        t_s, additional = _additional(evidence, _event_start_s(evidence, stretch), stretch.end_s)
-        _, before = _additional(evidence, stretch.begin_s - _LOOK_BACK_S, stretch.begin_s)
-        task = _task(requirement, demand, evidence, window, float(before[-1]))
-        return judged_by_parts(KIND, requirement, _parts(requirement, evidence, t_s, task.sign * additional, task))
+        t_s, support, task = _response(requirement, evidence, stretch, window)
+        return judged_by_parts(KIND, requirement, _parts(requirement, evidence, t_s, support, task))
+
+    def limits(self, requirement: SupportDynamics, evidence: Evidence) -> tuple[Band, ...]:
+        """Between what the current has to stay once the time to settle is over, in each stretch."""
+
+        def bands(stretch: Stretch) -> Iterator[Band]:
+            window = evidence.window_of(stretch, despite=ANY_LIGHT)
+            t_s, support, task = _response(requirement, evidence, stretch, window)
+            activated_s = _activated_s(requirement, t_s, support, task)
+            if activated_s is not None and (from_s := activated_s + requirement.settling_s.value) < stretch.end_s:
+                before = reactive_before(POSITIVE, evidence)
+                low, high = sorted(before + task.sign * edge for edge in (task.low, task.high))
+                yield level(KIND, REACTIVE_CURRENT, "settled", (from_s, float(t_s[-1])), lower=low, upper=high)
+
+        return of_each(self.stretches(requirement, evidence), bands)
+
+
+def _response(
+    requirement: SupportDynamics, evidence: Evidence, stretch: Stretch, window: WindowMeasurements
+) -> tuple[Samples, Samples, "_Task"]:
+    """Instants (s), additional current there, positive where it is more support (pu), and what it has to do."""
+    t_s, additional = _additional(evidence, _event_start_s(evidence, stretch), stretch.end_s)
+    _, before = _additional(evidence, stretch.begin_s - _LOOK_BACK_S, stretch.begin_s)
+    task = _task(requirement, _reactive_current(evidence), evidence, window, float(before[-1]))
+    return t_s, task.sign * additional, task
 
 
 class _Task(NamedTuple):
@@ -170,7 +195,7 @@ def _parts(requirement: SupportDynamics, evidence: Evidence, t_s: Samples, suppo
     """
     observed = Span(float(t_s[0]), float(t_s[-1]))
     moved = np.sign(task.change) * (support - task.before)
-    activated_s = first_reached(t_s, moved, requirement.activation_pu.value)
+    activated_s = _activated_s(requirement, t_s, support, task)
     responded_s = first_reached(t_s, moved, requirement.response_fraction.value * abs(task.change))
     size, share = requirement.activation_pu, requirement.response_fraction
     timed = partial(_time, uncertainty=evidence.half_cycle_s)
@@ -201,6 +226,10 @@ def _parts(requirement: SupportDynamics, evidence: Evidence, t_s: Samples, suppo
         (size, requirement.band_plus, requirement.band_minus, *task.rests_on),
     )
     return [*found, settled]
+
+
+def _activated_s(requirement: SupportDynamics, t_s: Samples, support: Samples, task: _Task) -> float | None:
+    return first_reached(t_s, np.sign(task.change) * (support - task.before), requirement.activation_pu.value)
 
 
 def _time(

@@ -1,11 +1,12 @@
 """The active power comes back after clearing, the sooner the shallower the sag was."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from pvlvrt_compliance.checks.check import StretchCheck
+from pvlvrt_compliance.checks.limits import around, level, of_each
 from pvlvrt_compliance.checks.parts import Part, judged_by_parts
 from pvlvrt_compliance.checks.power.faults import faults, levels, next_fault_s, require_clearing, window_in
 from pvlvrt_compliance.checks.recovery import part_after, recovered_after_s, settled_after_s
@@ -14,7 +15,9 @@ from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require_finite
 from pvlvrt_compliance.profile.requirements import ActivePowerRecovery
-from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.profile.tables import RecoveryRow
+from pvlvrt_compliance.results import Band, Verdict
+from pvlvrt_compliance.results.band import ACTIVE_POWER
 
 KIND = "active_power_recovery"
 
@@ -55,13 +58,7 @@ class ActivePowerRecoveryCheck(StretchCheck):
             When V+ or P cannot be measured, V+ does not return, or the record ends before P is back and before it must
             be.
         """
-        require_clearing(stretch, evidence)
-        _require_no_release(stretch, evidence)
-        residual_pu = min(_residual_pu(level, evidence) for level in levels(stretch, evidence))
-        # On the edge of two rows by less than the rounding of a voltage is on it, whichever way it was rounded.
-        row = requirement.rows.row_for(residual_pu + evidence.thresholds.voltage_tolerance_pu.value)
-        if row is None:
-            raise NotApplicable(f"no recovery is demanded after a sag to V+ = {residual_pu:.3f} pu")
+        residual_pu, row = _row(requirement, evidence, stretch)
         seen = _return(evidence, stretch, requirement.return_pu.value)
         before_kw = evidence.starting_power_kw
         first_kw = requirement.first_fraction.value * before_kw
@@ -86,6 +83,43 @@ class ActivePowerRecoveryCheck(StretchCheck):
             (requirement.rows.mark_of(row), requirement.return_pu, requirement.tolerance_fraction),
         )
         return judged_by_parts(KIND, requirement, (first, final))
+
+    def limits(self, requirement: ActivePowerRecovery, evidence: Evidence) -> tuple[Band, ...]:
+        """After each fault: the first fraction from its time on, then the tolerance around P before."""
+
+        def bands(stretch: Stretch) -> Iterator[Band]:
+            _, row = _row(requirement, evidence, stretch)
+            seen = _return(evidence, stretch, requirement.return_pu.value)
+            end_s, before_kw = seen.until_s or evidence.waveforms.end_s, evidence.starting_power_kw
+            room_kw = requirement.tolerance_fraction.value * evidence.nominal.apparent_power_kva
+            first_s, final_s = seen.from_s + row.first_s, seen.from_s + row.first_s + row.final_extra_s
+            if first_s < end_s:
+                least_kw = requirement.first_fraction.value * before_kw
+                yield level(KIND, ACTIVE_POWER, "P first back", (first_s, end_s), lower=least_kw)
+            if final_s < end_s:
+                yield around(KIND, ACTIVE_POWER, "P back", (final_s, end_s), before_kw, room_kw)
+
+        return of_each(self.stretches(requirement, evidence), bands)
+
+
+def _row(requirement: ActivePowerRecovery, evidence: Evidence, fault: Stretch) -> tuple[float, RecoveryRow]:
+    """V+ of a fault (pu), and the row of the table that its depth has.
+
+    Raises
+    ------
+    NotApplicable
+        When there is none, or nothing is demanded after the fault.
+    MeasurementError
+        When V+ cannot be measured.
+    """
+    require_clearing(fault, evidence)
+    _require_no_release(fault, evidence)
+    residual_pu = min(_residual_pu(part, evidence) for part in levels(fault, evidence))
+    # On the edge of two rows by less than the rounding of a voltage is on it, whichever way it was rounded.
+    row = requirement.rows.row_for(residual_pu + evidence.thresholds.voltage_tolerance_pu.value)
+    if row is None:
+        raise NotApplicable(f"no recovery is demanded after a sag to V+ = {residual_pu:.3f} pu")
+    return residual_pu, row
 
 
 def _require_no_release(fault: Stretch, evidence: Evidence) -> None:

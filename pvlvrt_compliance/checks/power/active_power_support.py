@@ -1,5 +1,7 @@
 """During a sag the inverter feeds the active power that its reactive power leaves room for."""
 
+from collections.abc import Iterator
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -7,12 +9,14 @@ import numpy as np
 from pvlvrt_compliance.checks.check import StretchCheck
 from pvlvrt_compliance.checks.current.reactive_support import KIND as REACTIVE_SUPPORT
 from pvlvrt_compliance.checks.current.reactive_support import demanded_at_pu
+from pvlvrt_compliance.checks.limits import along, of_each
 from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
 from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require_finite
 from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.profile.requirements import ActivePowerSupport, ReactiveSupport
-from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.results import Band, Verdict
+from pvlvrt_compliance.results.band import ACTIVE_POWER
 from pvlvrt_compliance.waveforms.container import Samples
 
 KIND = "active_power_support"
@@ -52,9 +56,9 @@ class ActivePowerSupportCheck(StretchCheck):
             When P, V+ or V- cannot be measured.
         """
         seen = _cycles(evidence, _settled(requirement, evidence, stretch))
-        support = evidence.requirements.of_kind(REACTIVE_SUPPORT) if evidence.requirements is not None else None
+        support = _support(evidence)
         rated_kva = evidence.nominal.apparent_power_kva
-        room_kw = rated_kva * room_pu(support, seen.v_positive_pu, seen.v_negative_pu, requirement.voltage_pu.value)
+        room_kw = _room_kw(requirement, evidence, seen)
         most_kw, words = min((evidence.power_before_kw, "fed before"), (_available_kw(evidence, stretch), "available"))
         due_kw = np.minimum(room_kw, most_kw)
         worst = int((seen.power_kw - due_kw).argmin())
@@ -81,6 +85,32 @@ class ActivePowerSupportCheck(StretchCheck):
             tolerance=tolerance,
             uncertainty=evidence.power_uncertainty_kva,
         )
+
+    def limits(self, requirement: ActivePowerSupport, evidence: Evidence) -> tuple[Band, ...]:
+        """What is due at each instant, and the same less the tolerance."""
+        tolerance = requirement.tolerance_fraction.value * evidence.nominal.apparent_power_kva
+
+        def bands(stretch: Stretch) -> Iterator[Band]:
+            seen = _cycles(evidence, _settled(requirement, evidence, stretch))
+            most_kw = min(evidence.power_before_kw, _available_kw(evidence, stretch))
+            due_kw = np.minimum(_room_kw(requirement, evidence, seen), most_kw)
+            draw = partial(along, KIND, ACTIVE_POWER, "limit of P", seen.t_s)
+            yield draw(lower=due_kw)
+            yield draw(lower=due_kw - tolerance, widened=True)
+
+        return of_each(self.stretches(requirement, evidence), bands)
+
+
+def _support(evidence: Evidence) -> ReactiveSupport | None:
+    if evidence.requirements is None:
+        return None
+    found: ReactiveSupport | None = evidence.requirements.of_kind(REACTIVE_SUPPORT)
+    return found
+
+
+def _room_kw(requirement: ActivePowerSupport, evidence: Evidence, seen: _Cycles) -> Samples:
+    rated_kva, around_pu = evidence.nominal.apparent_power_kva, requirement.voltage_pu.value
+    return rated_kva * room_pu(_support(evidence), seen.v_positive_pu, seen.v_negative_pu, around_pu)
 
 
 def room_pu(

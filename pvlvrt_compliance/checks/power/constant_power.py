@@ -3,11 +3,13 @@
 from collections.abc import Sequence
 
 from pvlvrt_compliance.checks.check import StretchCheck
+from pvlvrt_compliance.checks.limits import around
 from pvlvrt_compliance.checks.verdicts import judged_at_most
 from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.evidence.evidence import Evidence, required
 from pvlvrt_compliance.profile.requirements import ConstantPower
-from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.results import Band, Verdict
+from pvlvrt_compliance.results.band import ACTIVE_POWER
 
 KIND = "constant_power"
 
@@ -50,4 +52,13 @@ class ConstantPowerCheck(StretchCheck):
             at_s=window.start_s,
             rests_on=(requirement.limit_fraction,),
             uncertainty=evidence.power_uncertainty_kva,
+        )
+
+    def limits(self, requirement: ConstantPower, evidence: Evidence) -> tuple[Band, ...]:
+        """The largest ripple about the mean of P, in each window."""
+        room = requirement.limit_fraction.value * evidence.nominal.apparent_power_kva
+        return tuple(
+            around(KIND, ACTIVE_POWER, "ripple of P", (window.start_s, window.end_s), mean, room)
+            for window in evidence.windows_of(self.stretches(requirement, evidence))
+            if (mean := window.active_power_kw) is not None
         )

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from pvlvrt_compliance.checks.check import StretchCheck
+from pvlvrt_compliance.checks.limits import level, of_each
 from pvlvrt_compliance.checks.parts import Part, judged_by_parts
 from pvlvrt_compliance.checks.power.faults import faults, is_cut_by_trip, next_fault_s, window_in
 from pvlvrt_compliance.data.marks import Number
@@ -14,7 +15,8 @@ from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.profile.requirements import Consumption
 from pvlvrt_compliance.profile.requirements.power import ConsumptionZones
-from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.results import Band, Verdict
+from pvlvrt_compliance.results.band import ACTIVE_POWER, REACTIVE_CURRENT, REACTIVE_POWER
 from pvlvrt_compliance.waveforms.container import Samples
 
 KIND = "consumption"
@@ -51,6 +53,25 @@ class ConsumptionCheck(StretchCheck):
         zones = _zones(requirement, evidence, stretch)
         return judged_by_parts(KIND, requirement, list(_parts(zones, evidence, stretch)))
 
+    def limits(self, requirement: Consumption, evidence: Evidence) -> tuple[Band, ...]:
+        """The most that may be taken in each zone: of powers and of the reactive current; energies are no level."""
+
+        def bands(stretch: Stretch) -> Iterator[Band]:
+            zones = _zones(requirement, evidence, stretch)
+            a, b, c = _spans(zones, evidence, stretch)
+            rated_kva = evidence.nominal.apparent_power_kva
+            for name, zone, quantity, limit, times in (
+                ("least Q, zone A", a, REACTIVE_POWER, zones.reactive_power_a, rated_kva),
+                ("least P, zone B", b, ACTIVE_POWER, zones.active_power_b, rated_kva),
+                ("least Q, zone B", b, REACTIVE_POWER, zones.reactive_power_b, rated_kva),
+                ("least reactive current, zone C", c, REACTIVE_CURRENT, zones.reactive_current_c_pu, 1.0),
+            ):
+                span = (zone.start_s + 1 / evidence.frequency_hz, zone.end_s)
+                if limit is not None and span[1] > span[0]:
+                    yield level(KIND, quantity, name, span, lower=-limit.value * times)
+
+        return of_each(self.stretches(requirement, evidence), bands)
+
 
 def _zones(requirement: Consumption, evidence: Evidence, fault: Stretch) -> ConsumptionZones:
     negative_pu = _negative_pu(evidence, fault)
@@ -77,12 +98,20 @@ def _after(evidence: Evidence, fault: Stretch, transient_s: float) -> Span:
     return Span(fault.end_s, end_s if next_s is None else min(end_s, next_s))
 
 
-def _parts(zones: ConsumptionZones, evidence: Evidence, fault: Stretch) -> Iterator[Part]:
-    """Every limit that is stated, in the zones that the fault is long enough for."""
+def _spans(zones: ConsumptionZones, evidence: Evidence, fault: Stretch) -> tuple[Span, Span, Span]:
+    """Zones A, B and C."""
     transient_s = zones.transient_s.value
     end_of_a_s = min(fault.begin_s + transient_s, fault.end_s)
-    a, b = Span(fault.begin_s, end_of_a_s), Span(end_of_a_s, fault.end_s)
-    c = _after(evidence, fault, transient_s)
+    return (
+        Span(fault.begin_s, end_of_a_s),
+        Span(end_of_a_s, fault.end_s),
+        _after(evidence, fault, transient_s),
+    )
+
+
+def _parts(zones: ConsumptionZones, evidence: Evidence, fault: Stretch) -> Iterator[Part]:
+    """Every limit that is stated, in the zones that the fault is long enough for."""
+    a, b, c = _spans(zones, evidence, fault)
     yield from _power("zone A: reactive power", evidence, a, "Q", zones.reactive_power_a)
     yield from _energy("zone A: reactive energy", evidence, a, "Q", zones.reactive_energy_a_s)
     yield from _power("zone B: active power", evidence, b, "P", zones.active_power_b)

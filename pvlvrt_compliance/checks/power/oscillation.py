@@ -1,9 +1,10 @@
 """Active and reactive power do not swing while the grid stands still."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from pvlvrt_compliance.checks.check import StretchCheck
+from pvlvrt_compliance.checks.limits import about_the_line, of_each
 from pvlvrt_compliance.checks.verdicts import judged_at_most
 from pvlvrt_compliance.data.marks import Number
 from pvlvrt_compliance.disturbance.model import Stretch
@@ -11,7 +12,8 @@ from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require
 from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.measure.swing import Swing, swing, tone
 from pvlvrt_compliance.profile.requirements import Oscillation
-from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.results import Band, Verdict
+from pvlvrt_compliance.results.band import ACTIVE_POWER, REACTIVE_POWER
 from pvlvrt_compliance.waveforms.container import Samples
 
 KIND = "oscillation"
@@ -77,6 +79,17 @@ class OscillationCheck(StretchCheck):
             ),
             uncertainty=evidence.power_uncertainty_kva,
         )
+
+    def limits(self, requirement: Oscillation, evidence: Evidence) -> tuple[Band, ...]:
+        """The largest swing of P and of Q about their straight lines, in each stretch."""
+        room = requirement.limit_fraction.value * evidence.nominal.apparent_power_kva
+
+        def bands(stretch: Stretch) -> Iterator[Band]:
+            settled = _settled(requirement, evidence, stretch)
+            for name, quantity, x in zip("PQ", (ACTIVE_POWER, REACTIVE_POWER), evidence.half_cycle_kva, strict=True):
+                yield about_the_line(KIND, quantity, f"swing of {name}", evidence, settled, x, room)
+
+        return of_each(self.stretches(requirement, evidence), bands)
 
 
 def _settled(requirement: Oscillation, evidence: Evidence, stretch: Stretch) -> Mask:

@@ -3,13 +3,15 @@
 import numpy as np
 
 from pvlvrt_compliance.checks.check import Check
+from pvlvrt_compliance.checks.limits import along, stretches_of
 from pvlvrt_compliance.checks.verdicts import judged_at_most
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require_finite
 from pvlvrt_compliance.evidence.excursions import excursions
 from pvlvrt_compliance.evidence.frequency import frequency_hz
 from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.profile.requirements import OverfrequencyPower
-from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.results import Band, Verdict
+from pvlvrt_compliance.results.band import ACTIVE_POWER
 from pvlvrt_compliance.waveforms.container import Samples
 
 KIND = "overfrequency_power"
@@ -60,6 +62,23 @@ class OverfrequencyPowerCheck(Check):
                 requirement.tolerance_fraction,
             ),
             uncertainty=evidence.power_uncertainty_kva,
+        )
+
+    def limits(self, requirement: OverfrequencyPower, evidence: Evidence) -> tuple[Band, ...]:
+        """What the droop asks for, less and more the tolerance, wherever P has to follow it."""
+        frequency = frequency_hz(evidence)
+        wanted_kw = demanded_kw(requirement, evidence, frequency)
+        room_kw = requirement.tolerance_fraction.value * evidence.nominal.apparent_power_kva
+        return tuple(
+            along(
+                KIND,
+                ACTIVE_POWER,
+                "P by the droop",
+                evidence.t_s[part],
+                lower=wanted_kw[part] - room_kw,
+                upper=wanted_kw[part] + room_kw,
+            )
+            for part in stretches_of(_active(requirement, evidence, frequency))
         )
 
 

@@ -1,14 +1,18 @@
 """At the end of the record the inverter feeds what it fed before the disturbance."""
 
 import math
+from collections.abc import Iterator
+from typing import NamedTuple
 
 from pvlvrt_compliance.checks.check import Check
+from pvlvrt_compliance.checks.limits import around
 from pvlvrt_compliance.checks.parts import Part, by_margin, judged_by_parts
 from pvlvrt_compliance.data.marks import Number
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, required
 from pvlvrt_compliance.evidence.frequency import ends_at_another_frequency
 from pvlvrt_compliance.profile.requirements import ReturnToPrefault
-from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.results import Band, Verdict
+from pvlvrt_compliance.results.band import ACTIVE_POWER, REACTIVE_POWER
 
 KIND = "return_to_prefault"
 
@@ -35,19 +39,45 @@ class ReturnToPrefaultCheck(Check):
         _require_same_conditions(evidence)
         return judged_by_parts(KIND, requirement, _parts(requirement, evidence), nearest=by_margin)
 
+    def limits(self, requirement: ReturnToPrefault, evidence: Evidence) -> tuple[Band, ...]:
+        """P and Q of before, with the limits on either side, over the window `after`."""
+        return tuple(_bands(requirement, evidence))
+
+
+class _Stated(NamedTuple):
+    """A limit that the profile states, in fractions of rated power."""
+
+    name: str
+    unit: str
+    quantity: str  # of a window, and of a band
+    limit: Number
+    times: float
+
+
+def _stated(requirement: ReturnToPrefault, evidence: Evidence) -> Iterator[_Stated]:
+    if requirement.active_fraction is not None:
+        yield _Stated("P", "kW", ACTIVE_POWER, requirement.active_fraction, 1.0)
+    if requirement.reactive_fraction is not None:
+        yield _Stated("Q", "kvar", REACTIVE_POWER, requirement.reactive_fraction, 1.0)
+    if requirement.reactive_pu is not None:
+        yield _Stated("Q", "kvar", REACTIVE_POWER, requirement.reactive_pu, _voltage_pu(evidence))
+
 
 def _parts(requirement: ReturnToPrefault, evidence: Evidence) -> list[Part]:
-    """Each limit that is stated, in fractions of rated power."""
-    limits = (
-        ("P", "kW", "active_power_kw", requirement.active_fraction, 1.0),
-        ("Q", "kvar", "reactive_power_kvar", requirement.reactive_fraction, 1.0),
-        ("Q", "kvar", "reactive_power_kvar", requirement.reactive_pu, None),
-    )
     return [
-        _part(name, unit, *_before_and_after(evidence, quantity), limit, times or _voltage_pu(evidence), evidence)
-        for name, unit, quantity, limit, times in limits
-        if limit is not None
+        _part(of.name, of.unit, *_before_and_after(evidence, of.quantity), of.limit, of.times, evidence)
+        for of in _stated(requirement, evidence)
     ]
+
+
+def _bands(requirement: ReturnToPrefault, evidence: Evidence) -> Iterator[Band]:
+    window = evidence.measurements.after
+    if window is None:
+        return
+    for of in _stated(requirement, evidence):
+        before, _ = _before_and_after(evidence, of.quantity)
+        room, span = of.limit.value * of.times * evidence.nominal.apparent_power_kva, (window.start_s, window.end_s)
+        yield around(KIND, of.quantity, f"{of.name} as before", span, before, room)
 
 
 def _voltage_pu(evidence: Evidence) -> float:

@@ -1,13 +1,16 @@
 """The DC voltage stays free of ripple at twice the grid frequency."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from pvlvrt_compliance.checks.check import StretchCheck
+from pvlvrt_compliance.checks.limits import about_the_line, of_each
 from pvlvrt_compliance.checks.verdicts import judged_at_most
 from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.evidence.evidence import Evidence, require_finite, required
+from pvlvrt_compliance.measure.quantities import WindowMeasurements
 from pvlvrt_compliance.profile.requirements import DcRipple
-from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.results import Band, Verdict
+from pvlvrt_compliance.results.band import DC_VOLTAGE
 
 KIND = "dc_ripple"
 
@@ -52,3 +55,14 @@ class DcRippleCheck(StretchCheck):
             at_s=window.start_s,
             rests_on=(requirement.limit_percent,),
         )
+
+    def limits(self, requirement: DcRipple, evidence: Evidence) -> tuple[Band, ...]:
+        """The largest ripple about the straight line of v_DC, in each window."""
+
+        def bands(window: WindowMeasurements) -> Iterator[Band]:
+            inside = evidence.between(window.start_s, window.end_s)
+            mean = required(window.dc_voltage_mean_v, "v_DC")
+            room = 2 * requirement.limit_percent.value / 100 * mean
+            yield about_the_line(KIND, DC_VOLTAGE, "ripple", evidence, inside, evidence.dc_voltage_v, room)
+
+        return of_each(evidence.windows_of(self.stretches(requirement, evidence)), bands)

@@ -6,11 +6,6 @@ def header() -> None:
 
     Example: pvlvrt-check controllers header > ieee_cigre.h
     """
-    print(header_text(), end="")
+    from pvlvrt_compliance.controllers.library import HEADER
 
-
-def header_text() -> str:
-    """The header."""
-    from pvlvrt_compliance.simulation.doors import HEADER
-
-    return HEADER.read_text("utf-8")
+    print(HEADER.read_text("utf-8"), end="")

@@ -6,10 +6,7 @@ from typing import Annotated
 import typer
 
 from pvlvrt_compliance.cli.writing import write_over
-from pvlvrt_compliance.errors import UsageError, unwritable
-
-_FORMATS = (".svg", ".png", ".html")
-_SCALES = ("linear", "log")
+from pvlvrt_compliance.errors import unwritable
 
 
 def plot(
@@ -27,18 +24,14 @@ def plot(
     """
     from pvlvrt_compliance.checks.kinds import INSTALLED_KINDS
     from pvlvrt_compliance.profile.loading import load_profile
+    from pvlvrt_compliance.report.drawing.drawers import drawer_for, scale_named
+    from pvlvrt_compliance.report.drawing.of_profile import panels
 
-    if scale and scale not in _SCALES:
-        raise UsageError(f"--scale {scale}: allowed are {', '.join(_SCALES)}")
-    file = Path(output) if output else None
-    if file is not None and file.suffix.lower() not in _FORMATS:
-        raise UsageError(f"--output {output}: the name must end in {', '.join(_FORMATS)}")
+    wanted = scale_named(scale, "--scale") if scale else None
+    drawer = drawer_for(output, "--output")
     profile = load_profile(name, INSTALLED_KINDS)
-    file = file or Path(f"{profile.id}.svg")
-    from pvlvrt_compliance.report import profile_figure
-
-    render = getattr(profile_figure, f"render_{file.suffix.lower()[1:]}")
-    content = render(profile, scale or None)
+    file = Path(output or f"{profile.id}{drawer.suffix}")
+    content = drawer.render(profile.id, profile.title, panels(profile, wanted))
     try:
         write_over(file, content if isinstance(content, bytes) else content.encode())
     except OSError as error:

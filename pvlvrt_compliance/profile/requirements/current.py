@@ -1,5 +1,6 @@
 """Currents: how large they may be, and what they must do for the voltage during a sag."""
 
+import math
 from typing import Literal, Self
 
 from pydantic import Field, model_validator
@@ -72,6 +73,16 @@ class ReactiveCurrent(Requirement):
     tolerance_minus_pu: NotNegative = Field(description="less support than demanded")
     limit_pu: Positive = Field(description="total current up to which support is demanded")
     blocking_allowed_below_pu: NotNegative = Field(description="V+ below which a blocked bridge is let off")
+
+
+def beyond_dead_band(delta_u_pu: float, dead_band_pu: float, mode: DeadBandMode) -> float:
+    """Return f(delta u) of the three readings of a dead band (pu)."""
+    if mode == "none":
+        return delta_u_pu
+    exceeding = max(abs(delta_u_pu) - dead_band_pu, 0.0)
+    if mode == "shift":
+        return math.copysign(exceeding, delta_u_pu)
+    return delta_u_pu if exceeding > 0 else 0.0
 
 
 class SupportDynamics(Requirement):

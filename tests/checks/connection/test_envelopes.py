@@ -130,11 +130,17 @@ def test_trip_that_is_not_the_voltages_matter(bench, with_envelopes):
 
 
 def test_the_drawn_envelope_begins_anew_where_the_judged_one_does(bench):
-    """A second sag has its own time: the band of the figure falls to the first level again at its step, not before."""
+    """A second sag has its own time: the band of the figure falls to the first level again at its step, not before.
+
+    The same with the tolerance lies as far below it, but not below zero.
+    """
     again = {"kind": "sag", "t_s": 1.0, "duration_s": 0.2, "sag": Sag(depth=0.9)}
     made = bench(depth=0.9, duration_s=0.2, q_sag_kvar=50, scenario={"events": [again], "after_s": 2.0})
-    (band,) = [band for band in made.result().bands if band.quantity == "voltage_positive_pu"]
-    envelope = made.profile.envelope
+    band, widened = (band for band in made.result().bands if band.quantity == "voltage_positive_pu")
+    envelope, tolerance_pu = made.profile.envelope, made.profile.ride_through.envelope_tolerance_pu.value
+    assert (band.widened, widened.widened) == (False, True)
+    assert (widened.name, widened.t_s) == (band.name, band.t_s)
+    assert widened.lower == pytest.approx([max(level - tolerance_pu, 0) for level in band.lower])
     for begin_s, until_s in ((0.3, 1.3), (1.3, 2.5)):
         at = np.linspace(begin_s + 1e-6, until_s - 1e-6, 50)
         assert np.interp(at, band.t_s, band.lower) == pytest.approx(envelope.voltage_at(at - begin_s), abs=1e-4)

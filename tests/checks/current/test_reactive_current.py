@@ -4,25 +4,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from demands import DETECTION, K_FACTOR
 
 from pvlvrt_compliance.checks.current.reactive_current import beyond_dead_band
 from pvlvrt_compliance.results import Status
 from pvlvrt_compliance.scenario.events import VoltageProfile
 from pvlvrt_compliance.scenario.sag import Sag
 
-K_FACTOR = {
-    "k": 2.0,
-    "dead_band_pu": 0.1,
-    "dead_band_mode": "none",
-    "reference": "prefault",
-    "tolerance_plus_pu": 0.2,
-    "tolerance_minus_pu": 0.1,
-    "limit_pu": 1.0,
-    "blocking_allowed_below_pu": 0.2,
-}
 TWO_PHASE = Sag(depth=0.5, phases="bc", two_phase=True)  # V+ = 0.75, V- = 0.25
 INSIDE_AND_OUTSIDE = [(-0.002, Status.FAIL), (0.002, Status.PASS)]
-DETECTION = {"enter_below_pu": 0.85, "leave_above_pu": 0.85}
 
 
 @pytest.fixture

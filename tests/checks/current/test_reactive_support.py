@@ -75,6 +75,7 @@ def test_the_band_is_drawn_where_the_verdict_fails(bench, settings):
     """What a figure draws is as far from the measured Q as the margin says, with support and without."""
     result = bench(**settings).result()
     check = next(check for check in result.checks if check.check == "reactive_support")
-    (band,) = [band for band in result.bands if band.check == "reactive_support"]
+    *plain, band = (band for band in result.bands if band.check == "reactive_support")
+    assert [other.lower[0] for other in plain] == ([check.limit] if check.bound == "at_least" else [])
     edges = [check.measured - band.lower[0]] + ([band.upper[0] - check.measured] if band.upper else [])
     assert min(edges) == pytest.approx(check.margin, abs=1e-6)

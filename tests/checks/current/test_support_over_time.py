@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from demands import DETECTION, DYNAMICS, RATIO
 
 from pvlvrt_compliance.checks.api import judge_alone
 from pvlvrt_compliance.checks.current.reactive_ratio import ReactiveRatioCheck
@@ -11,23 +12,6 @@ from pvlvrt_compliance.scenario.sag import Sag
 
 CYCLE_S = 0.02
 FINAL_PU = 0.5
-DYNAMICS = {
-    "activation_pu": 0.05,
-    "activation_s": 0.02,
-    "response_fraction": 0.9,
-    "response_s": 0.05,
-    "settling_s": 0.06,
-    "band_plus": 0.2,
-    "band_minus": 0.1,
-    "least_change_pu": 0.05,
-}
-RATIO = {
-    "curve": {"points": [[0, 0.9], [0.5, 0.9], [0.85, 0]], "confidence": "chosen", "source": "the test"},
-    "within_s": 0.15,
-    "tolerance": 0.01,
-    "least_current_pu": 0.05,
-}
-DETECTION = {"enter_below_pu": 0.85, "leave_above_pu": 0.85}
 MARGINS = [(-0.2e-3, Status.FAIL), (0.2e-3, Status.PASS)]
 
 

@@ -1,15 +1,7 @@
 """Generators of records just inside and just outside of every limit of a profile, one a kind of requirement."""
 
 from edges.connection import phase_jump_ride_through, ride_through
-from edges.current import (
-    current_limit,
-    negative_sequence_current,
-    reactive_current,
-    reactive_ratio,
-    reactive_support,
-    support_dynamics,
-    toggling,
-)
+from edges.current import current_limit, reactive_ratio, reactive_support, toggling
 from edges.edge import Edge, Generator, Record
 from edges.frequency import frequency_ride_through, overfrequency_power
 from edges.power import (
@@ -17,12 +9,11 @@ from edges.power import (
     active_power_support,
     constant_power,
     consumption,
-    dc_injection,
-    dc_ripple,
-    harmonics,
     oscillation,
     return_to_prefault,
 )
+from edges.quality import dc_injection, dc_ripple, harmonics
+from edges.reactive_current import negative_sequence_current, reactive_current, support_dynamics
 
 __all__ = ["GENERATORS", "Edge", "Record"]
 

@@ -26,6 +26,21 @@ LET_OFF = frozenset({Status.NOT_APPLICABLE})
 FREE = frozenset({Status.NOT_APPLICABLE, Status.PASS})
 """An inverter that may let go, or had to cease and did."""
 
+LEVEL_PU = 1e-3
+"""Distance in voltage."""
+
+CURRENT_PU = 1e-3
+"""Distance in current, as a fraction of nominal."""
+
+SHARE = 2e-3
+"""Distance as a fraction of the limit."""
+
+FINE_STEP_S = 2 * 40.9568e-6
+"""122 samples of a cycle at 50 Hz: two and more of the 50th harmonic."""
+
+LONG_S = 100.0
+"""Records that last longer are sampled eight times a cycle."""
+
 NO_SAG = Sag(depth=0)
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from edges.edge import FAIL, LET_OFF, PASS, RATED_KVA, STEP_S, Edge, Record, Statuses, hz, record
+from edges.edge import FAIL, LET_OFF, LONG_S, PASS, RATED_KVA, STEP_S, Edge, Record, Statuses, hz, record
 from pvlvrt_compliance.profile import Profile
 from pvlvrt_compliance.profile.requirements import FrequencyRideThrough, OverfrequencyPower
 
@@ -14,8 +14,6 @@ ACCURACY_HZ = 0.010
 
 F_HZ = 0.003
 """Distance in frequency."""
-
-LONG_S = 100.0
 
 
 def frequency_ride_through(demand: FrequencyRideThrough, profile: Profile) -> Iterator[Edge]:

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from demands import MARK
 
 from pvlvrt_compliance.results import Status
 
-MARK = {"confidence": "chosen", "source": "the test"}
 SIDES = [(0.99, Status.PASS), (1.01, Status.FAIL)]
 SECOND_S = 0.9
 """Start of the second sag; both last 0.4 s."""

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from demands import MARK
 
 from pvlvrt_compliance.results import Status
 from pvlvrt_compliance.scenario.sag import Sag
 
 CYCLE_S = 0.02
 DT_S = 40.9568e-6
-MARK = {"confidence": "chosen", "source": "the test"}
 RECOVERY = {
     "return_pu": 0.85,
     "first_fraction": 0.95,

@@ -1,0 +1,114 @@
+"""Limits of a check as a figure draws them, made in one way."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from typing import TypeVar
+
+import numpy as np
+
+from pvlvrt_compliance.errors import MeasurementError
+from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
+from pvlvrt_compliance.evidence.outline import bends
+from pvlvrt_compliance.evidence.series import Mask
+from pvlvrt_compliance.measure.swing import without_line
+from pvlvrt_compliance.results import Band
+from pvlvrt_compliance.waveforms.container import Samples
+
+_FINE = 1e-3  # part of the largest value: how far a limit that is drawn may be from one that changes all along
+
+Part = TypeVar("Part")
+
+
+def of_each(parts: Iterable[Part], bands: Callable[[Part], Iterable[Band]]) -> tuple[Band, ...]:
+    """Bands of those parts of a record that can be judged."""
+    found: list[Band] = []
+    for part in parts:
+        with suppress(NotApplicable, MeasurementError):
+            found += bands(part)
+    return tuple(found)
+
+
+def level(
+    check: str,
+    quantity: str,
+    name: str,
+    span: Sequence[float],
+    *,
+    lower: float | None = None,
+    upper: float | None = None,
+    widened: bool = False,
+) -> Band:
+    """A limit that holds from one instant to another (s); parameters as of `Band`."""
+    return Band(
+        check=check,
+        quantity=quantity,
+        name=name,
+        t_s=tuple(span),
+        lower=None if lower is None else (lower,) * len(span),
+        upper=None if upper is None else (upper,) * len(span),
+        widened=widened,
+    )
+
+
+def around(
+    check: str, quantity: str, name: str, span: Sequence[float], middle: float, room: float, *, widened: bool = False
+) -> Band:
+    """A limit on both sides of a value."""
+    return level(check, quantity, name, span, lower=middle - room, upper=middle + room, widened=widened)
+
+
+def along(
+    check: str,
+    quantity: str,
+    name: str,
+    t_s: Samples,
+    *,
+    lower: Samples | None = None,
+    upper: Samples | None = None,
+    widened: bool = False,
+) -> Band:
+    """A limit that changes all along, by as few points as its straight lines need.
+
+    Parameters
+    ----------
+    t_s : array, shape (n,)
+        Instants (s), one at least.
+    lower, upper : array, shape (n,)
+        The limit there; finite.
+    """
+    edges = [edge for edge in (lower, upper) if edge is not None]
+    fine = _FINE * max(float(np.abs(edge).max()) for edge in edges)
+    kept = bends(fine, t_s, *edges)
+    return Band(
+        check=check,
+        quantity=quantity,
+        name=name,
+        t_s=tuple(t_s[kept].tolist()),
+        lower=None if lower is None else tuple(lower[kept].tolist()),
+        upper=None if upper is None else tuple(upper[kept].tolist()),
+        widened=widened,
+    )
+
+
+def about_the_line(
+    check: str, quantity: str, name: str, evidence: Evidence, inside: Mask, x: Samples, room: float
+) -> Band:
+    """What a series may swing by about its straight line: so wide in all, in the middle of where it swings."""
+    t_s, values = evidence.t_s[inside], x[inside]
+    rest = without_line(t_s, values, evidence.step_s[inside])
+    middle = values - rest + (rest.max() + rest.min()) / 2
+    ends = (float(middle[0]), float(middle[-1]))
+    return Band(
+        check=check,
+        quantity=quantity,
+        name=name,
+        t_s=(float(t_s[0]), float(t_s[-1])),
+        lower=tuple(end - room / 2 for end in ends),
+        upper=tuple(end + room / 2 for end in ends),
+    )
+
+
+def stretches_of(mask: Mask) -> Iterator[slice]:
+    """Stretches of samples that a mask holds without a break."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(np.int8)))
+    yield from (slice(int(first), int(end)) for first, end in edges.reshape(-1, 2))

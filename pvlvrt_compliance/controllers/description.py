@@ -1,0 +1,97 @@
+"""What a controller says of itself: its ports, its parameters, its sample time."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+Value = float | int | bool | str
+"""Of a parameter."""
+
+
+@dataclass(frozen=True)
+class Port:
+    """A place where a controller takes or gives numbers.
+
+    Parameters
+    ----------
+    name, unit, description : str
+        As the controller has them.
+    mapped_to : str or None
+        Signal that it is given, command that it gives, or the name it is recorded under; None: neither.
+    width : int
+        Numbers that it holds.
+    note : str
+        Why it is not mapped, where that needs saying.
+    """
+
+    name: str
+    unit: str = ""
+    description: str = ""
+    mapped_to: str | None = None
+    width: int = 1
+    note: str = ""
+
+    @property
+    def is_loose(self) -> bool:
+        """Whether the port, or an element of it, is tied to nothing."""
+        return self.mapped_to is None or "-" in self.mapped_to.split(", ")
+
+
+@dataclass(frozen=True)
+class ParameterInfo:
+    """A parameter of a controller, as ``--set controller.NAME=`` reaches it."""
+
+    name: str
+    value: Value
+    unit: str = ""
+    description: str = ""
+    minimum: float | None = None
+    maximum: float | None = None
+
+
+@dataclass(frozen=True)
+class Description:
+    """What a controller says of itself.
+
+    Parameters
+    ----------
+    kind : str
+        Kind of door.
+    name : str
+        Name and version of the controller.
+    digest : str
+        SHA-256 of its file, or of what names it (hexadecimal).
+    sample_time_s : float
+        From one call to the next (s).
+    notes : tuple of str
+        What else there is to know of it.
+    mapping : str or None
+        The mapping file that ties its ports, if there is one.
+    """
+
+    kind: str
+    name: str
+    digest: str
+    sample_time_s: float
+    inputs: tuple[Port, ...] = ()
+    outputs: tuple[Port, ...] = ()
+    parameters: tuple[ParameterInfo, ...] = ()
+    notes: tuple[str, ...] = ()
+    mapping: str | None = None
+
+    def to_json(self) -> dict[str, Any]:
+        """As plain dictionaries."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, data: Mapping[str, Any]) -> "Description":
+        """Back from plain dictionaries."""
+        return cls(
+            **{
+                **data,
+                "inputs": tuple(Port(**port) for port in data["inputs"]),
+                "outputs": tuple(Port(**port) for port in data["outputs"]),
+                "parameters": tuple(ParameterInfo(**parameter) for parameter in data["parameters"]),
+                "notes": tuple(data["notes"]),
+            }
+        )

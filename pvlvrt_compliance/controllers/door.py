@@ -1,0 +1,88 @@
+"""What a door is: the contract between the loop and every kind of controller from outside."""
+
+from collections.abc import Mapping, Sequence
+from typing import ClassVar, NamedTuple, Protocol
+
+from pvlvrt_compliance.controllers.description import Description, Value
+from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.simulation.door.blocks import Block
+from pvlvrt_compliance.units import Nominal
+
+
+class DoorError(UsageError):
+    """A controller cannot be opened, or has stopped; the message is for its author."""
+
+
+class DoorCall(NamedTuple):
+    """An open door. Addresses are of functions ``int32_t f(void *argument)`` in this process that return 0 on success.
+
+    A function that returns 1 has something to say: with a ``note_address``, that is called, and the run goes on.
+    Memory and functions live until the door is closed; the door keeps them alive.
+    """
+
+    address: int  # advances the controller by one sample
+    argument: int  # what it is called with
+    inputs: Block  # written before every call
+    outputs: Block  # read after it; held in between
+    first_address: int = 0  # called once before all others, when the first inputs are there; 0: none
+    hold_address: int = 0  # called before it as long as the controller does not act yet; 0: none
+    note_address: int = 0  # called after a function has returned 1; 0: that is a failure
+    in_volts: bool = False  # whether the outputs command voltages
+    recorded: tuple[str, ...] = ()  # names of the further signals, by which they are recorded
+    notes: Sequence[str] = ()  # what the controller has to say; grows as it runs
+
+
+class Door(Protocol):
+    """One kind of controller. Used in a process of its own: opened once, run once, closed.
+
+    A folder of this room with a module ``door`` holds one, a class that is named there as ``DOOR``; `doors` finds it.
+
+    Parameters
+    ----------
+    spec : str
+        What stands after ``--controller``.
+    given : mapping
+        Parameters that the user has set.
+    mapping : str, optional
+        Mapping file.
+
+    Raises
+    ------
+    DoorError
+        When there is nothing to open, or what is given does not fit it.
+    """
+
+    written: ClassVar[str]
+    """How a specification of it is written: ``FILE.fmu``."""
+
+    schemes: ClassVar[tuple[str, ...]] = ()
+    """How specifications of it begin, if by that they are known: ``stdio:``."""
+
+    suffixes: ClassVar[tuple[str, ...]] = ()
+    """How the names of its files end, if by that they are known: ``.fmu``."""
+
+    def __init__(self, spec: str, given: Mapping[str, Value], mapping: str | None = None) -> None: ...
+
+    def describe(self) -> Description:
+        """Name, ports, parameters and sample time, known before it is opened.
+
+        Raises
+        ------
+        DoorError
+            When a mapping file does not fit its ports.
+        """
+
+    def open(self, nominal: Nominal) -> DoorCall:
+        """Make a controller at rest for an inverter of this rating, ready for its first sample.
+
+        Raises
+        ------
+        DoorError
+            When it refuses.
+        """
+
+    def message(self) -> str:
+        """What the controller has said last, above all why it failed."""
+
+    def close(self) -> None:
+        """End the controller."""

@@ -1,0 +1,47 @@
+"""The doors that there are, found by listing the folders of this room, and which one a specification leads to."""
+
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+from pathlib import Path
+from pkgutil import iter_modules
+
+from pvlvrt_compliance import controllers
+from pvlvrt_compliance.controllers.description import Value
+from pvlvrt_compliance.controllers.door import Door, DoorError
+
+
+def _listed() -> Iterator[type[Door]]:
+    for folder in iter_modules(controllers.__path__, f"{controllers.__name__}."):
+        if folder.ispkg and "door" in {module.name for module in iter_modules(import_module(folder.name).__path__)}:
+            yield import_module(f"{folder.name}.door").DOOR
+
+
+DOORS: tuple[type[Door], ...] = tuple(_listed())
+"""In the order of their folders."""
+
+
+def door_to(spec: str, given: Mapping[str, Value], mapping: str | None = None) -> Door:
+    """Door to a controller; ``given`` are the parameters that the user has set, ``mapping`` names a mapping file.
+
+    Raises
+    ------
+    DoorError
+        When no door fits, or there is nothing behind it.
+    """
+    found = _by_scheme(spec) or _by_suffix(spec)
+    if found is None:
+        *first, last = (door.written for door in DOORS)
+        raise DoorError(f"not a kind of controller that is known; write {', '.join(first)} or {last}")
+    return found(spec, given, mapping)
+
+
+def _by_scheme(spec: str) -> type[Door] | None:
+    return next((door for door in DOORS if spec.startswith(door.schemes)), None)
+
+
+def _by_suffix(spec: str) -> type[Door] | None:
+    """By how the file's name ends; the last suffix counts before those inside (``libctrl.so.1``)."""
+    names = [Path(spec), Path(spec.rpartition(":")[0])]  # FILE.py:CLASS
+    suffixes = [suffix for name in names for suffix in reversed(name.suffixes)]
+    last = [name.suffix for name in names]
+    return next((door for suffix in [*last, *suffixes] for door in DOORS if suffix in door.suffixes), None)

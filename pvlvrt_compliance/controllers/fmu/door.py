@@ -1,0 +1,139 @@
+"""The door for FMUs for co-simulation, ``ctrl.fmu``, of FMI 2 and FMI 3."""
+
+import hashlib
+import tempfile
+import zipfile
+from collections.abc import Mapping
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+from pvlvrt_compliance.controllers.description import Description, Value
+from pvlvrt_compliance.controllers.door import Door, DoorCall, DoorError
+from pvlvrt_compliance.controllers.fmu.instance import Fmu, laid_out
+from pvlvrt_compliance.controllers.fmu.model import read_model
+from pvlvrt_compliance.controllers.given_parameters import checked_parameters, seconds
+from pvlvrt_compliance.controllers.mapping.commands import check_commands
+from pvlvrt_compliance.controllers.mapping.constants import set_constants
+from pvlvrt_compliance.controllers.mapping.file import load_mapping, mapping_path
+from pvlvrt_compliance.controllers.mapping.sides import map_inputs, map_outputs
+from pvlvrt_compliance.controllers.mapping.ties import Mapped
+from pvlvrt_compliance.simulation.door.blocks import Block
+from pvlvrt_compliance.simulation.door.native_call import FUNCTION, address_of
+from pvlvrt_compliance.units import Nominal
+
+SAMPLE_TIME = "sample_time_s"
+"""Parameter that every FMU takes here besides its own."""
+
+
+class FmuDoor(Door):
+    """Door for an FMU.
+
+    Parameters
+    ----------
+    spec : str
+        Its file.
+    given : mapping
+        Parameters that the user has set; ``sample_time_s`` is not the FMU's but how often it is stepped.
+    mapping : str, optional
+        Mapping file; by default ``<stem>.mapping.toml`` beside the FMU, if there is one.
+
+    Raises
+    ------
+    DoorError
+        When there is no such file, it cannot be used here, or what is given does not fit it.
+    """
+
+    written = "FILE.fmu"
+    suffixes = (".fmu",)
+
+    def __init__(self, spec: str, given: Mapping[str, Value], mapping: str | None = None) -> None:
+        self._file = Path(spec)
+        if not self._file.is_file():
+            raise DoorError(f"there is no file {self._file}")
+        self._model = read_model(self._file)
+        parameters = self._model.parameters
+        holds = {p.info.name: p.holds for p in parameters}
+        self._given = checked_parameters(given, (p.info for p in parameters), holds, besides=(SAMPLE_TIME,))
+        self._sample_time_s = seconds(given, SAMPLE_TIME) or self._proposed_sample_time_s()
+        self._inputs, self._outputs = laid_out(self._model.inputs), laid_out(self._model.outputs)
+        self._mapping_file = mapping_path(spec, mapping)
+        self._mapping = load_mapping(self._mapping_file)
+        self._fmu: Fmu | None = None
+        self._resources = ExitStack()
+
+    def describe(self) -> Description:
+        """Model, ports and parameters by its modelDescription.xml."""
+        inputs, outputs = self._mapped(Nominal())
+        return Description(
+            kind=f"fmi{self._model.version}",
+            name=self._model.name,
+            digest=hashlib.sha256(self._file.read_bytes()).hexdigest(),
+            sample_time_s=self._sample_time_s,
+            inputs=inputs.ports,
+            outputs=outputs.ports,
+            parameters=tuple(p.info for p in self._model.parameters),
+            notes=self._model.notes,
+            mapping=self._mapping_file,
+        )
+
+    def open(self, nominal: Nominal) -> DoorCall:
+        """Unpack, load and initialise it; make the function that the loop calls."""
+        inputs, outputs = self._mapped(nominal)
+        check_commands(outputs)
+        folder = self._resources.enter_context(tempfile.TemporaryDirectory(prefix="fmu-", ignore_cleanup_errors=True))
+        _unpack(self._file, Path(folder))
+        fmu = self._fmu = Fmu(self._model, Path(folder))
+        parameters = [(p, self._given[p.info.name]) for p in self._model.parameters if p.info.name in self._given]
+        fmu.start(parameters, self._inputs)
+        set_constants(self._inputs.memory, inputs.constants)
+        function = FUNCTION(fmu.stepping(self._sample_time_s, self._inputs, self._outputs))
+        self._alive: Any = function
+        return DoorCall(
+            address=address_of(function),
+            argument=0,
+            inputs=Block(self._inputs.memory, inputs.elements),
+            outputs=Block(self._outputs.memory, outputs.elements),
+            in_volts=outputs.in_volts,
+            recorded=outputs.recorded,
+            notes=fmu.notes,
+        )
+
+    def message(self) -> str:
+        """Why the last step was not done, with the FMU's log."""
+        return self._fmu.message() if self._fmu is not None else ""
+
+    def close(self) -> None:
+        """End the instance and remove what was unpacked."""
+        fmu, self._fmu = self._fmu, None
+        try:
+            if fmu is not None:
+                fmu.end()
+        finally:
+            self._resources.close()
+
+    def _mapped(self, nominal: Nominal) -> tuple[Mapped, Mapped]:
+        return (
+            map_inputs(self._inputs.raw, self._mapping, nominal),
+            map_outputs(self._outputs.raw, self._mapping, nominal),
+        )
+
+    def _proposed_sample_time_s(self) -> float:
+        found = self._model.sample_time_s
+        if found is None:
+            raise DoorError(
+                "its description has no stepSize in DefaultExperiment (nor an intervalDecimal of a clock, FMI 3),"
+                f" so how often it is to be stepped is not known; give --set controller.{SAMPLE_TIME}=..."
+            )
+        return found
+
+
+DOOR = FmuDoor
+
+
+def _unpack(file: Path, folder: Path) -> None:
+    try:
+        with zipfile.ZipFile(file) as archive:
+            archive.extractall(folder)
+    except (zipfile.BadZipFile, OSError, RuntimeError) as error:
+        raise DoorError(f"{file} cannot be unpacked: {error}") from None

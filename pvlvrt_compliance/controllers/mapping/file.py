@@ -1,0 +1,138 @@
+"""The file that ties a controller's ports to the plant: its tables, and how it is read."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    FiniteFloat,
+    PrivateAttr,
+    model_validator,
+)
+
+from pvlvrt_compliance.controllers.door import DoorError
+from pvlvrt_compliance.controllers.mapping.port_units import Bases
+from pvlvrt_compliance.data.positions import Location, Places
+from pvlvrt_compliance.data.reader import Kind, Source, read_model
+from pvlvrt_compliance.errors import listed
+
+Sign = Literal[1, -1]
+Direction = Literal["out_of_inverter", "into_inverter"]
+OutputKind = Literal["modulating", "voltage"]
+
+ENDING = ".mapping.toml"
+"""What the name of a mapping file ends in that is found beside its controller."""
+
+
+def _as_tuple(value: Any) -> Any:
+    if isinstance(value, str):
+        return (value,)
+    return tuple(value) if isinstance(value, list) else value
+
+
+Names = Annotated[tuple[str, ...], BeforeValidator(_as_tuple)]
+"""A name, or one for every element of a wide port."""
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class InputEntry(_Table):
+    """What an input is given; in a file also a signal's name, a list of them, or a number alone."""
+
+    signal: Names | None = None
+    constant: FiniteFloat | None = Field(default=None, description="in the port's unit")
+    unit: str | None = Field(default=None, description="none: as the controller says")
+    base: FiniteFloat | None = Field(default=None, gt=0, description="1 pu in the signal's unit")
+    sign: Sign = 1
+    direction: Direction = Field(default="out_of_inverter", description="of a positive current")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_short(cls, value: Any) -> Any:
+        if isinstance(value, (str, list, tuple)):
+            return {"signal": value}
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            return {"constant": value}
+        return value
+
+    @model_validator(mode="after")
+    def _one_source(self) -> "InputEntry":
+        if (self.signal is None) == (self.constant is None):
+            raise ValueError("give a signal or a constant")
+        return self
+
+
+class OutputEntry(_Table):
+    """What an output gives; in a file also a command's name or a list of them alone."""
+
+    command: Names | None = None
+    record: Names | None = Field(default=None, description="channel of the record")
+    unit: str | None = Field(default=None, description="none: as the controller says")
+    base: FiniteFloat | None = Field(default=None, gt=0, description="1 pu in the command's unit")
+    sign: Sign = 1
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_short(cls, value: Any) -> Any:
+        return {"command": value} if isinstance(value, (str, list, tuple)) else value
+
+    @model_validator(mode="after")
+    def _one_target(self) -> "OutputEntry":
+        if (self.command is None) == (self.record is None):
+            raise ValueError("give a command, or a name to record it under")
+        return self
+
+
+class MappingFile(_Table):
+    """A mapping file: entries by the port's name, of one element of a wide port by ``name[index]``, from 0."""
+
+    inputs: dict[str, InputEntry] = {}
+    outputs: dict[str, OutputEntry] = {}
+    bases: Bases = Bases()
+    currents: Direction = Field(default="out_of_inverter", description="positive phase currents that name no direction")
+    output_kind: OutputKind | None = Field(default=None, description="of two kinds of commands that are complete")
+
+    _places: Places = PrivateAttr(default=Places("mapping", {}))
+
+    def problem(self, location: Location, text: str) -> str:
+        """A problem in words: file, line, key, what is wrong."""
+        return self._places.problem(location, text)
+
+
+def load_mapping(path: str | Path | None) -> MappingFile | None:
+    """Read a mapping file; None without one.
+
+    Raises
+    ------
+    DoorError
+        When it cannot be read or has keys or values that are not known; all problems with line and key.
+    """
+    if path is None:
+        return None
+    source = Source(Path(path), MAPPING)
+    mapping = read_model(source, MappingFile)
+    mapping._places = source.places
+    return mapping
+
+
+def refusal(origin: str, problems: Sequence[str]) -> DoorError:
+    """All problems of a mapping as one error."""
+    return DoorError(listed(origin, problems))
+
+
+MAPPING = Kind("a mapping file", "mapping files", refusal)
+
+
+def mapping_path(spec: str, named: str | None) -> str | None:
+    """Mapping file of a controller that is a file: the one named, else ``<stem>.mapping.toml`` beside it, if any."""
+    if named is not None:
+        return named
+    file = Path(spec)
+    found = file.with_name(file.stem + ENDING)
+    return str(found) if found.is_file() else None

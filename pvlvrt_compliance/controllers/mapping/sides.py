@@ -1,0 +1,98 @@
+"""Which plant signal each port of a controller is given, and which command it gives: by a mapping file, or by name."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from pvlvrt_compliance.controllers.channels import TAKEN, check_channel
+from pvlvrt_compliance.controllers.door import DoorError
+from pvlvrt_compliance.controllers.mapping.commands import of_a_kind
+from pvlvrt_compliance.controllers.mapping.constants import Constant
+from pvlvrt_compliance.controllers.mapping.file import InputEntry, MappingFile, OutputEntry
+from pvlvrt_compliance.controllers.mapping.names import QUANTITIES, Guess, guess_input, guess_output
+from pvlvrt_compliance.controllers.mapping.port_units import Bases, Scale, scale_of
+from pvlvrt_compliance.controllers.mapping.ties import Mapped, RawPort, Side, Slot, Tie, tied
+from pvlvrt_compliance.simulation.door.blocks import Element
+from pvlvrt_compliance.simulation.door.exchange import COMMANDS, SIGNALS
+from pvlvrt_compliance.units import Nominal
+
+
+def map_inputs(ports: Sequence[RawPort], mapping: MappingFile | None, nominal: Nominal) -> Mapped:
+    """Tie inputs to plant signals and constants: as the file says, else by name where that is clear.
+
+    Raises
+    ------
+    DoorError
+        When the file names a port or signal that is not there, or a unit does not fit; all problems at once.
+    """
+    mapping = mapping or MappingFile()
+
+    def tie(slot: Slot, entry: InputEntry, name: str | None) -> Tie:
+        if name is None:
+            value = float(entry.constant or 0.0)
+            return Tie(f"{value:g}", None, Constant(slot.byte, slot.port.kind, value))
+        scale = _scaled(slot, entry, name, mapping.bases, nominal)
+        sign = entry.sign * _direction(entry, name, mapping)
+        return Tie(name, Element(SIGNALS.index(name), slot.byte, slot.port.kind, sign * scale.gain, scale.offset))
+
+    def names_of(entry: InputEntry) -> Any:
+        return entry.signal
+
+    return tied(Side("inputs", ports, mapping.inputs, guess_input, SIGNALS, InputEntry, names_of, tie), mapping)
+
+
+def map_outputs(ports: Sequence[RawPort], mapping: MappingFile | None, nominal: Nominal) -> Mapped:
+    """Tie outputs to commands and to channels of the record: as the file says, else by name where that is clear.
+
+    Whether all commands are given is in ``missing``: see `commands.check_commands`.
+
+    Raises
+    ------
+    DoorError
+        When the file names a port or command that is not there, two outputs give one command, or a unit does not fit.
+    """
+    mapping = mapping or MappingFile()
+    recorded: list[str] = []
+
+    def tie(slot: Slot, entry: OutputEntry, name: str | None) -> Tie:
+        assert name is not None
+        if entry.record is not None:
+            signal, scale = _new_channel(name, recorded), Scale(1.0)
+        else:
+            signal, scale = COMMANDS.index(name), _scaled(slot, entry, name, mapping.bases, nominal)
+        return Tie(name, Element(signal, slot.byte, slot.port.kind, entry.sign * scale.gain, scale.offset))
+
+    def names_of(entry: OutputEntry) -> Any:
+        return entry.command if entry.record is None else entry.record
+
+    known = COMMANDS
+    mapped = tied(Side("outputs", ports, mapping.outputs, _guess_output, known, OutputEntry, names_of, tie), mapping)
+    return of_a_kind(mapped._replace(recorded=tuple(recorded)), mapping.output_kind)
+
+
+def _guess_output(name: str, width: int) -> Guess:
+    """The command that an output means; of one that means none, the channel that it is recorded under: its own name."""
+    guess = guess_output(name, width)
+    free = name.isascii() and name.isidentifier() and name not in {*TAKEN, *COMMANDS}
+    return Guess((name,)) if free and width == 1 and not guess.names and not guess.note else guess
+
+
+def _scaled(slot: Slot, entry: InputEntry | OutputEntry, name: str, bases: Bases, nominal: Nominal) -> Scale:
+    unit = slot.port.unit if entry.unit is None else entry.unit
+    return scale_of(QUANTITIES.get(name, "number"), unit, bases, nominal, entry.base)
+
+
+def _direction(entry: InputEntry, name: str, mapping: MappingFile) -> int:
+    """-1 where a positive current flows into the inverter."""
+    if QUANTITIES.get(name) != "current":
+        if "direction" in entry.model_fields_set:
+            raise DoorError("direction is for phase currents; write sign = -1")
+        return 1
+    direction = entry.direction if "direction" in entry.model_fields_set else mapping.currents
+    return -1 if direction == "into_inverter" else 1
+
+
+def _new_channel(name: str, recorded: list[str]) -> int:
+    """Index of a further signal, which is recorded under a name."""
+    check_channel(name, recorded, ascii_only=True)
+    recorded.append(name)
+    return len(COMMANDS) + len(recorded) - 1

@@ -1,0 +1,1 @@
+"""Controllers that are a program of their own, by its pipes or a socket."""

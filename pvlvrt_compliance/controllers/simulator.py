@@ -1,0 +1,196 @@
+"""From a scenario and parameters to waveforms, with a controller of the user's own in a process of its own."""
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from threading import Event
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pvlvrt_compliance.controllers.description import Description, Value
+from pvlvrt_compliance.controllers.mapping.commands import missing_commands, missing_words
+from pvlvrt_compliance.controllers.process.isolation import RECORD, Ended, do_apart, stop_apart
+from pvlvrt_compliance.controllers.process.worker import DescribeJob, RunJob
+from pvlvrt_compliance.controllers.run import IGNORED_WORDS, settling_s_of, when
+from pvlvrt_compliance.controllers.sample_time import rates_of
+from pvlvrt_compliance.errors import SimulationError, UsageError
+from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.parameters import Parameters
+from pvlvrt_compliance.simulation.recorder import RecordingPlan
+from pvlvrt_compliance.simulation.simulate import record_of, recorded
+from pvlvrt_compliance.simulation.surroundings import playback_table
+from pvlvrt_compliance.waveforms import Waveforms
+
+_OPENING_LIMIT_S = 60.0
+_LIMIT_S, _LIMIT_PER_S = 60.0, 20.0  # of computing, and more of it for every second of the record
+
+
+class ForeignSimulator:
+    """Simulator (`simulation.simulate.simulate` is the bundled one) with a controller from outside.
+
+    Parameters
+    ----------
+    spec : str
+        The controller, ``my_ctrl.py:MyController``.
+    given : mapping
+        Its parameters, as far as they are set.
+    mapping : str or None
+        File that ties its ports to the plant; None: the one beside it, if there is one, and their names.
+
+    Raises
+    ------
+    UsageError
+        When it cannot be opened.
+    """
+
+    def __init__(self, spec: str, given: Mapping[str, Value] | None = None, mapping: str | None = None) -> None:
+        self.spec = spec
+        self._given = dict(given or {})
+        self.notes: list[str] = []  # what the controller has said in its runs so far, each once
+        self._mapping = mapping
+        self._stopped = Event()
+        self.description = self._describe()
+        if loose := self.loose_inputs():
+            self.notes.append(f"tied to nothing and left as the controller has them: inputs {', '.join(loose)}")
+
+    def __call__(self, scenario: Scenario, parameters: Parameters) -> Waveforms:
+        """Run the controller through a scenario.
+
+        Raises
+        ------
+        SimulationError
+            When the controller fails, crashes, does not come to an end, or gives what cannot be used; with the
+            simulated time, the reason, and the end of what it has printed.
+        UsageError
+            When its sample time does not fit the plant step that is set.
+        """
+        rates = rates_of(self.description.sample_time_s, parameters)
+        period_s = rates.sample_time_s / rates.periods
+        row_s = rates.thinning * period_s
+        limit_s = parameters.simulation.time_limit_s or _LIMIT_S + _LIMIT_PER_S * scenario.end_s
+
+        def make(plan: RecordingPlan) -> Waveforms:
+            in_periods = RecordingPlan(first=rates.thinning * plan.first, step=rates.thinning * plan.step)
+            answer, samples = self._run(job_of(in_periods), limit_s)
+            self.notes += [note for note in answer["notes"] if note not in self.notes]
+            return record_of(samples, plan, row_s, answer["channels"], tripped_at_s=answer["tripped_at_s"])
+
+        def job_of(plan: RecordingPlan) -> RunJob:
+            return RunJob(
+                *(self.spec, self._given, self._mapping),
+                scenario=scenario,
+                parameters=parameters,
+                plan=plan,
+                digest=self.description.digest,
+            )
+
+        settling_s = settling_s_of(parameters) if parameters.simulation.record_settling else 0.0
+        return recorded(scenario, playback_table(scenario), row_s, make, settling=int(settling_s / row_s))
+
+    def _run(self, job: RunJob, limit_s: float) -> tuple[dict[str, Any], NDArray[np.float64]]:
+        """Answer and samples of a run. One whose process ends after a trip is run anew, its controller left alone then.
+
+        Raises
+        ------
+        SimulationError
+            When there is no answer, or it is an error.
+        """
+        if self._stopped.is_set():
+            raise SimulationError("the run was stopped")
+        ended, arrays = do_apart(job, limit_s, keep=[RECORD])
+        if ended.answer is not None or ended.tripped_s is None or self._stopped.is_set():
+            return _answer_of(ended), arrays[RECORD]
+        again, arrays = do_apart(replace(job, after_trip=False), limit_s, keep=[RECORD])
+        answer = _answer_of(again)
+        return {**answer, "notes": [*answer["notes"], f"{IGNORED_WORDS}: {_end_in_words(ended)}"]}, arrays[RECORD]
+
+    def stop(self) -> None:
+        """End the run that may be under way in another thread: nobody waits for it any more."""
+        self._stopped.set()
+        stop_apart()
+
+    def loose_inputs(self) -> tuple[str, ...]:
+        """Inputs that are given nothing, not even by a constant of the mapping."""
+        return tuple(port.name for port in self.description.inputs if port.is_loose)
+
+    def loose_outputs(self) -> tuple[str, ...]:
+        """Outputs that give nothing and are not recorded."""
+        return tuple(port.name for port in self.description.outputs if port.is_loose)
+
+    def check_commands(self) -> None:
+        """Refuse a controller whose outputs do not command all three phases.
+
+        Raises
+        ------
+        UsageError
+            With what is missing, and what is free.
+        """
+        if missing := missing_commands(self.description.outputs):
+            raise UsageError(f"--controller {self.spec}: {missing_words(missing, self.loose_outputs())}")
+
+    def mapping(self) -> str | None:
+        """The mapping file, if there is one."""
+        return self.description.mapping
+
+    def parameter_values(self) -> dict[str, Value]:
+        """Its parameters by name: as they are given, else as the controller has them."""
+        return {p.name: self._given.get(p.name, p.value) for p in self.description.parameters}
+
+    def provenance(self, parameters: Parameters) -> dict[str, Any]:
+        """What identifies the controller and how it was run."""
+        rates = rates_of(self.description.sample_time_s, parameters)
+        mapping = self.mapping()
+        return {
+            "controller": self.spec,
+            "controller_kind": self.description.kind,
+            "controller_name": self.description.name,
+            "controller_digest": self.description.digest,
+            "controller_parameters": self.parameter_values(),
+            "controller_notes": [*self.description.notes, *self.notes],
+            **(_mapping_provenance(mapping) if mapping else {}),
+            "controller_sample_time_s": self.description.sample_time_s,
+            "plant_step_us": rates.plant_step_us,
+            "plant_steps_per_sample": rates.plant_steps_per_sample,
+            "computation_delay_samples": parameters.controller.computation_delay_samples,
+        }
+
+    def _describe(self) -> Description:
+        ended, _ = do_apart(DescribeJob(self.spec, self._given, self._mapping), _OPENING_LIMIT_S)
+        if ended.answer is None:
+            raise UsageError(f"--controller {self.spec}: {_with_said(ended.reason, ended)}")
+        if "error" in ended.answer:
+            raise UsageError(f"--controller {self.spec}: {_with_said(ended.answer['error'], ended)}")
+        return Description.from_json(ended.answer["description"])
+
+
+def _mapping_provenance(mapping: str) -> dict[str, str]:
+    digest = hashlib.sha256(Path(mapping).read_bytes()).hexdigest()
+    return {"controller_mapping": mapping, "controller_mapping_digest": digest}
+
+
+def _answer_of(ended: Ended) -> dict[str, Any]:
+    """Answer of a run.
+
+    Raises
+    ------
+    SimulationError
+        When there is none, or it is an error.
+    """
+    if ended.answer is None:
+        raise SimulationError(_with_said(_end_in_words(ended), ended))
+    if "error" in ended.answer:
+        raise SimulationError(_with_said(ended.answer["error"], ended))
+    return ended.answer
+
+
+def _end_in_words(ended: Ended) -> str:
+    """Why a process gave no answer, and when."""
+    at = "while it was opened" if ended.progress_s is None else f"at {when(ended.progress_s)}"
+    return f"{ended.reason} {at}"
+
+
+def _with_said(text: str, ended: Ended) -> str:
+    return f"{text}\nit had printed: {ended.said}" if ended.said else text

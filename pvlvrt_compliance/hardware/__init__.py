@@ -1,0 +1,1 @@
+"""What lies between plant and controller: sensors, converters, delays, precision."""

@@ -1,0 +1,4 @@
+"""One model of panels, lines and areas, made from evidence or from a profile; one file a drawer."""
+
+OF_A_TEST = f"{__name__}.of_test:drawing"
+"""What draws a judged record, by its name: `(evidence, result, *, buckets) -> Drawing`."""

@@ -1,0 +1,96 @@
+"""What is said of instants: steps of the disturbance, what is no normal voltage, the window, the breaker."""
+
+from collections.abc import Callable, Iterator
+from typing import Literal
+
+from pvlvrt_compliance.disturbance.model import Step
+from pvlvrt_compliance.report.drawing.colours import BLACK, BLUE, GREY, VERMILION
+from pvlvrt_compliance.report.drawing.model import Mark, Point, Shade, Zoom
+from pvlvrt_compliance.results import TestResult
+
+ROWS = 4
+"""Rows of words above the first panel."""
+
+_NEAR_AN_END = 0.25  # of the record: words as long as they are here would leave the drawing
+_BEFORE_S, _AFTER_S = 0.02, 0.08  # what the zoom on an instant shows
+
+Anchor = Literal["left", "center", "right"]
+Place = Callable[[float, Anchor], Anchor]
+
+
+def steps_of(result: TestResult) -> tuple[Step, ...]:
+    """Steps of the disturbance, none where a result of an earlier version does not say what the grid did."""
+    return result.disturbance.steps if result.disturbance else ()
+
+
+def shades_of(result: TestResult, span: Point) -> tuple[Shade, ...]:
+    """What is no normal voltage, in grey, and the measurement window, in blue."""
+    during = result.measurements.during
+    window = [Shade(during.start_s, during.end_s, BLUE, 0.10)] if during else []
+    return (*(Shade(*part, "#000000", 0.045) for part in _abnormal(result, span[1])), *window)
+
+
+def marks_of(result: TestResult, span: Point, opened_s: float | None) -> tuple[Mark, ...]:
+    """A line at each step and at the opening of the breaker; words above the first panel, none of which leaves it."""
+    start_s, length_s = span[0], span[1] - span[0]
+
+    def place(at_s: float, usual: Anchor) -> Anchor:
+        share = (at_s - start_s) / length_s if length_s > 0 else 0.0
+        return "left" if share < _NEAR_AN_END else "right" if share > 1 - _NEAR_AN_END else usual
+
+    lines = (Mark(step.at_s, GREY, "dash") for step in steps_of(result))
+    return (*lines, *_words(result, place), *_opening(result, opened_s, place))
+
+
+def zooms_of(result: TestResult, span: Point) -> tuple[Zoom, ...]:
+    """The whole record, the disturbance, a few cycles around its first and its last step."""
+    zooms = [Zoom("whole record", *span)]
+    if steps := steps_of(result):
+        first_s, last_s = steps[0].at_s, steps[-1].at_s
+        margin_s = 0.1 * (last_s - first_s)
+        disturbance = [Zoom("disturbance", first_s - margin_s, last_s + margin_s)]
+        end = [Zoom("end", last_s - _BEFORE_S, last_s + _AFTER_S)]
+        start = Zoom("start", first_s - _BEFORE_S, first_s + _AFTER_S)
+        zooms += [*disturbance, start, *end] if last_s > first_s else [start]
+    return tuple(zooms)
+
+
+def _abnormal(result: TestResult, end_s: float) -> list[Point]:
+    """Where the voltage asked for is not normal (s); what follows on without a gap is one."""
+    found: list[Point] = []
+    for part in result.disturbance.stretches if result.disturbance else ():
+        if part.kind != "normal" and part.begin_s < end_s:
+            joined = bool(found) and found[-1][1] == part.begin_s
+            begin_s = found.pop()[0] if joined else part.begin_s
+            found.append((begin_s, min(part.end_s, end_s)))
+    return found
+
+
+def _words(result: TestResult, place: Place) -> Iterator[Mark]:
+    """Name the first and the last step, and the window between them; steps between stand without words."""
+    steps, during = steps_of(result), result.measurements.during
+    if steps:
+        yield _named(steps[0].at_s, _step_in_words(steps[0], "start"), place(steps[0].at_s, "right"), row=1)
+    if len(steps) > 1:
+        apart = place(steps[0].at_s, "right") == "right" and place(steps[-1].at_s, "left") == "left"
+        row = 1 if apart else 2
+        yield _named(steps[-1].at_s, _step_in_words(steps[-1], "end"), place(steps[-1].at_s, "left"), row=row)
+    if during:
+        middle_s = (during.start_s + during.end_s) / 2
+        yield _named(middle_s, "window “during”", place(middle_s, "center"), row=3, colour=BLUE)
+
+
+def _step_in_words(step: Step, name: str) -> str:
+    return f"{name} {step.at_s:.3f} s ({', '.join(step.moved)})"
+
+
+def _opening(result: TestResult, opened_s: float | None, place: Place) -> Iterator[Mark]:
+    if opened_s is not None:
+        by = f": {result.trip_cause}" if result.trip_cause else ""
+        words = f"breaker opens {opened_s:.3f} s{by}"
+        named = _named(opened_s, words, place(opened_s, "left"), row=4, colour=VERMILION)
+        yield named._replace(colour=VERMILION, dash="solid")
+
+
+def _named(at_s: float, words: str, anchor: Anchor, row: int, colour: str = BLACK) -> Mark:
+    return Mark(at_s, colour, None, words, row, anchor, colour)

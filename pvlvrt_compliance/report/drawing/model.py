@@ -1,0 +1,211 @@
+"""What is drawn, as plain data that no drawer's library is needed for: panels of lines and areas."""
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+if TYPE_CHECKING:  # what is drawn of a profile needs no numpy
+    import numpy as np
+    from numpy.typing import NDArray
+
+Scale = Literal["linear", "log"]
+Dash = Literal["solid", "dash", "dot", "dashdot", "longdash"]
+Point = tuple[float, float]
+Points = tuple[Point, ...]
+
+BLACK = "#222222"
+
+STROKES_PX: dict[Dash, tuple[float, ...]] = {
+    "solid": (),
+    "dash": (9, 9),
+    "dot": (3, 3),
+    "dashdot": (9, 3, 3, 3),
+    "longdash": (15, 15),
+}
+"""Lengths drawn and left out by turns, as plotly.js has them for lines up to 3 px wide."""
+
+_BELOW, _ABOVE = 0.04, 0.06  # of the height, left free
+_MARKUP = re.compile("</?su[bp]>")
+
+
+class OnGrid(NamedTuple):
+    """Places on a uniform grid: ``first + step * number``, for samples that are picked from a record."""
+
+    first: float
+    step: float
+    numbers: "NDArray[np.int64]"  # shape (n,), rising
+
+
+Places = OnGrid | Sequence[float]
+"""Values of the horizontal axis, shape (n,)."""
+
+
+class Run(NamedTuple):
+    """Points that straight lines join; what is not finite is a gap."""
+
+    x: Places
+    y: Sequence[float] | Any  # or an array of float64, shape (n,)
+
+
+class Strip(NamedTuple):
+    """What lies between two broken lines over the same places."""
+
+    x: Places
+    lower: Sequence[float] | Any
+    upper: Sequence[float] | Any
+
+
+class Line(NamedTuple):
+    """A curve or a limit: runs of points of one look.
+
+    Of a ``group`` one line or area stands in the legend for all, and shows and hides them together.
+    """
+
+    name: str
+    runs: tuple[Run, ...]
+    colour: str = BLACK
+    width: float = 1.3  # px
+    dash: Dash = "solid"
+    opacity: float = 1.0
+    group: str = ""
+    in_legend: bool = True
+    told: bool = False  # whether its values are told under the pointer
+
+
+class Area(NamedTuple):
+    """Strips of one look, filled; with an edge of the same colour where it is ``edged``."""
+
+    name: str
+    strips: tuple[Strip, ...]
+    colour: str = BLACK
+    opacity: float = 0.18
+    edged: bool = True
+    group: str = ""
+    in_legend: bool = True
+
+
+class Axis(NamedTuple):
+    """One axis: what it is of with its unit, and from where to where; None: as far as what is drawn."""
+
+    label: str
+    span: Point | None = None
+    scale: Scale = "linear"
+    from_zero: bool = False
+
+
+class Panel(NamedTuple):
+    """One set of axes, ``height`` relative to the others; areas lie below the lines."""
+
+    title: str
+    x: Axis
+    y: Axis
+    lines: tuple[Line, ...]
+    areas: tuple[Area, ...] = ()
+    height: float = 1.0
+
+
+class Mark(NamedTuple):
+    """An instant across all panels, with words in a row above them (1 is the nearest); none: without words."""
+
+    at_s: float
+    colour: str
+    dash: Dash | None = None  # none: words alone, without a line
+    words: str = ""
+    row: int = 1
+    anchor: Literal["left", "center", "right"] = "left"
+    words_colour: str = BLACK
+
+
+class Shade(NamedTuple):
+    """A stretch of time that is shaded across all panels."""
+
+    begin_s: float
+    end_s: float
+    colour: str
+    opacity: float
+
+
+class Zoom(NamedTuple):
+    """A part of the time that a reader may want to see closer."""
+
+    name: str
+    begin_s: float
+    end_s: float
+
+
+class Drawing(NamedTuple):
+    """Panels over one axis of time, and what is said of instants across all of them."""
+
+    panels: tuple[Panel, ...]
+    span: Point
+    marks: tuple[Mark, ...] = ()
+    shades: tuple[Shade, ...] = ()
+    zooms: tuple[Zoom, ...] = ()
+
+
+def span_of(panel: Panel) -> tuple[Point, Point]:
+    """From where to where the axes of a panel go, x and y: their own spans, or as far as what is drawn.
+
+    Beyond what is drawn the vertical axis goes on a little, so that no line lies on the frame.
+    """
+    runs = [run for line in panel.lines for run in line.runs]
+    strips = [strip for area in panel.areas for strip in area.strips]
+    x, y = panel.x.span, panel.y.span
+    if x is None:
+        places = [*(run.x for run in runs), *(strip.x for strip in strips)]
+        x = _span([v for part in places for v in values(part)], panel.x)
+    if y is None:
+        edges = [run.y for run in runs] + [edge for strip in strips for edge in (strip.lower, strip.upper)]
+        low, high = _span([v for edge in edges for v in edge], panel.y)
+        y = (low - _BELOW * (high - low), high + _ABOVE * (high - low))
+    return x, y
+
+
+def _span(numbers: Sequence[float], axis: Axis) -> Point:
+    """The least and the largest number that the axis can show, apart from each other."""
+    known = [float(v) for v in numbers if math.isfinite(v) and (v > 0 or axis.scale == "linear")]
+    known += [0.0] if axis.from_zero else []
+    if not known:
+        return (1.0, 10.0) if axis.scale == "log" else (0.0, 1.0)
+    low, high = min(known), max(known)
+    if high > low:
+        return low, high
+    return (low / 2, high * 2) if axis.scale == "log" else (low - 0.5, high + 0.5)
+
+
+def broken_lines(run: Run) -> list[Points]:
+    """The points of a run between its gaps."""
+    return [tuple(points) for points in _between_gaps(run.x, run.y)]
+
+
+def outlines(strip: Strip) -> list[Points]:
+    """The corners of a strip between its gaps: along its lower line, and back along its upper one."""
+    return [outline(Strip(*zip(*rows, strict=True))) for rows in _between_gaps(strip.x, strip.lower, strip.upper)]
+
+
+def _between_gaps(x: Places, *edges: Sequence[float]) -> Iterator[list[Any]]:
+    rows = zip(values(x), *edges, strict=True)
+    for known, stretch in groupby(rows, key=lambda row: all(map(math.isfinite, row))):
+        if known:
+            yield list(stretch)
+
+
+def plain(name: str) -> str:
+    """A name without the markup of what is set high or low in it."""
+    return _MARKUP.sub("", name)
+
+
+def outline(strip: Strip) -> Points:
+    """The corners of a strip: along its lower line, and back along its upper one."""
+    x = values(strip.x)
+    return (*zip(x, strip.lower, strict=True), *reversed(list(zip(x, strip.upper, strict=True))))
+
+
+def values(x: Places) -> Sequence[float]:
+    """The places as numbers, shape (n,)."""
+    if isinstance(x, OnGrid):
+        found: Sequence[float] = (x.first + x.step * x.numbers).tolist()
+        return found
+    return x

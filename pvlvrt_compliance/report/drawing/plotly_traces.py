@@ -1,0 +1,108 @@
+"""Lines and areas as traces of plotly.js; where their numbers are packed, once `report.js` has unpacked them."""
+
+import base64
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pvlvrt_compliance.report.drawing.model import Area, Line, OnGrid, Places, values
+
+Trace = dict[str, Any]
+
+_EDGE_PX = 0.7
+_SAME_SAMPLE = 1e-3  # of a step
+
+
+def line_trace(line: Line, *, packed: bool = True) -> Trace:
+    """A line as a trace: one for all of its runs, with gaps between them; ``packed`` as of `area_trace`."""
+    told: Trace = {"hovertemplate": "%{y:.4~g}"} if line.told else {"hoverinfo": "skip"}
+    opacity = {"opacity": line.opacity} if line.opacity < 1 else {}
+    return {
+        "name": line.name,
+        **_points([(run.x, (run.y,)) for run in line.runs], packed),
+        "line": {"color": line.colour, "width": line.width, **({} if line.dash == "solid" else {"dash": line.dash})},
+        "legendgroup": line.group or line.name,
+        "showlegend": line.in_legend,
+        **told,
+        **opacity,
+    }
+
+
+def area_trace(area: Area, *, packed: bool = True) -> Trace:
+    """An area as a trace: one for all of its strips.
+
+    Samples are ``packed`` for `report.js`, or stand as ``x`` and ``y`` that plotly.js needs nothing more for.
+    """
+    return {
+        "name": area.name,
+        **_points([(strip.x, (strip.lower, strip.upper)) for strip in area.strips], packed),
+        "fill": "toself",
+        "fillcolor": translucent(area.colour, area.opacity),
+        "line": {"color": area.colour, "width": _EDGE_PX if area.edged else 0},
+        "legendgroup": area.group or area.name,
+        "showlegend": area.in_legend,
+        "hoverinfo": "skip",
+    }
+
+
+def translucent(colour: str, opacity: float) -> str:
+    """A colour as CSS has one that shows what lies below."""
+    red, green, blue = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
+    return f"rgba({red},{green},{blue},{opacity:g})"
+
+
+def _points(pieces: Sequence[tuple[Places, tuple[Any, ...]]], packed: bool) -> Trace:
+    """Coordinates of broken lines, or of areas between two of them each."""
+    if packed and pieces and isinstance(pieces[0][0], OnGrid):
+        return {"packed": _packed(pieces)}
+    x: list[float | None] = []
+    y: list[float | None] = []
+    for places, edges in pieces:
+        there = values(places)
+        x += [*([None] if x else []), *there, *(reversed(there) if len(edges) == 2 else [])]
+        y += [*([None] if y else []), *edges[0], *(reversed(edges[1]) if len(edges) == 2 else [])]
+    return {"x": x, "y": [None if level is None or not math.isfinite(level) else level for level in y]}
+
+
+def _packed(pieces: Sequence[tuple[Any, tuple[Any, ...]]]) -> Trace:
+    """Samples picked from grids, in as few bytes as there can be: a place takes mostly one.
+
+    ``pieces``: first place, step and number of points of each, and 1 where it goes on from the one before; ``skip``:
+    how many steps each point is beyond the one before, 0 of the first of a piece; ``y``: values, of areas ``lower`` and
+    ``upper``.
+    """
+    grids = [x for x, _ in pieces]
+    ends = [math.nan, *(x.first + x.step * int(x.numbers[-1]) for x in grids)]
+    skips = [np.diff(x.numbers, prepend=x.numbers[:1]) for x, _ in pieces]
+    names = ("y",) if len(pieces[0][1]) == 1 else ("lower", "upper")
+    return {
+        "pieces": [_piece(x, end) for x, end in zip(grids, ends, strict=False)],
+        "skip": _whole_numbers(np.concatenate(skips)),
+        **{name: typed_array(np.concatenate([edges[k] for _, edges in pieces])) for k, name in enumerate(names)},
+    }
+
+
+def _piece(x: OnGrid, last: float) -> list[float]:
+    """One piece of what is packed, after another that ends at a place."""
+    first = x.first + x.step * int(x.numbers[0])
+    return [first, x.step, len(x.numbers), int(abs(first - last) < _SAME_SAMPLE * x.step)]
+
+
+def _whole_numbers(x: NDArray[np.int64]) -> Trace:
+    kind = next(kind for kind in ("u1", "u2", "u4") if x.max(initial=0) <= np.iinfo(kind).max)
+    return _array(x.astype(f"<{kind}"), kind)
+
+
+def typed_array(y: NDArray[np.float64]) -> Trace:
+    """Encode as a base64 float32 array; values beyond float32 become gaps."""
+    with np.errstate(over="ignore"):
+        single = y.astype("<f4")
+    single[~np.isfinite(single)] = np.nan
+    return _array(single, "f4")
+
+
+def _array(x: NDArray[Any], kind: str) -> Trace:
+    return {"dtype": kind, "bdata": base64.b64encode(x.tobytes()).decode("ascii")}

@@ -1,0 +1,143 @@
+"""Panels as SVG, from a template, without any library that draws."""
+
+import math
+import textwrap
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from pvlvrt_compliance.report.drawing.clipping import Frame, area_within, lines_within
+from pvlvrt_compliance.report.drawing.model import (
+    STROKES_PX,
+    Area,
+    Dash,
+    Line,
+    Panel,
+    Point,
+    Points,
+    Scale,
+    Strip,
+    broken_lines,
+    outlines,
+    plain,
+    span_of,
+)
+from pvlvrt_compliance.resources import resource_folder
+
+SUFFIX = ".svg"
+WIDTH, PANEL_HEIGHT, LEFT, RIGHT, TOP, BOTTOM, LEGEND_ROW = 760, 330, 66, 20, 34, 50, 17
+LETTERS_A_LINE = 90
+_HEAD, _HEAD_ROW = 36.0, 18.0
+
+
+def render(name: str, title: str, panels: Sequence[Panel]) -> str:
+    """Return the panels as one SVG.
+
+    Parameters
+    ----------
+    name, title : str
+        What they are of: short, and in words.
+    panels : sequence of Panel
+    """
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    loader = FileSystemLoader(resource_folder("reports"))
+    environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True)
+    heading = textwrap.wrap(title, LETTERS_A_LINE)
+    drawn, top = [], _HEAD + _HEAD_ROW * len(heading)
+    for panel in panels:
+        drawn.append(_Drawing(panel, top))
+        top = drawn[-1].bottom
+    template = environment.get_template("panels.svg.j2")
+    return template.render(name=name, title=title, heading=heading, drawings=drawn, width=WIDTH, height=top)
+
+
+class _Tick(NamedTuple):
+    at: float
+    label: str
+
+
+class _Entry(NamedTuple):
+    """What stands in a legend."""
+
+    of: Line | Area
+    name: str
+    is_area: bool
+
+
+class _Drawing:
+    """A panel in the coordinates of the SVG."""
+
+    def __init__(self, panel: Panel, top: float) -> None:
+        self.panel = panel
+        self.x_span, self.y_span = span_of(panel)
+        self.top = top + TOP
+        self.floor = self.top + PANEL_HEIGHT
+        self.left, self.right = float(LEFT), float(WIDTH - RIGHT)
+        self.legend = [
+            *(_Entry(area, plain(area.name), True) for area in panel.areas if area.in_legend),
+            *(_Entry(line, plain(line.name), False) for line in panel.lines if line.in_legend),
+        ]
+        self.legend_top = self.floor + BOTTOM
+        self.bottom = self.legend_top + LEGEND_ROW * len(self.legend) + 12
+
+    @property
+    def x_ticks(self) -> list[_Tick]:
+        """Places and texts along the horizontal axis."""
+        low, high = self.x_span
+        steps = _decades(low, high) if self.panel.x.scale == "log" else _round_steps(low, high)
+        return [_Tick(self._x(value), f"{value:g}") for value in steps]
+
+    @property
+    def y_ticks(self) -> list[_Tick]:
+        """Places and texts along the vertical axis."""
+        return [_Tick(self._y(value), f"{value:g}") for value in _round_steps(*self.y_span)]
+
+    def paths(self, line: Line) -> list[str]:
+        """The runs of a line, each between its gaps, within the frame."""
+        pieces = [self._placed(points) for run in line.runs for points in broken_lines(run)]
+        return [_path(part) for piece in pieces for part in lines_within(self._frame, piece)]
+
+    def outlines(self, strip: Strip) -> list[str]:
+        """The corners of a strip, between its gaps, within the frame."""
+        parts = [area_within(self._frame, self._placed(points)) for points in outlines(strip)]
+        return [_path(part) for part in parts if part]
+
+    def strokes(self, dash: Dash) -> str:
+        """Lengths drawn and left out by turns; nothing for a line that is not broken."""
+        return " ".join(f"{length:g}" for length in STROKES_PX[dash])
+
+    @property
+    def _frame(self) -> Frame:
+        return Frame((self.left, self.right), (self.top, self.floor))
+
+    def _placed(self, points: Points) -> Points:
+        return tuple((self._x(x), self._y(y)) for x, y in points)
+
+    def _x(self, value: float) -> float:
+        return self.left + (self.right - self.left) * _share(value, self.x_span, self.panel.x.scale)
+
+    def _y(self, value: float) -> float:
+        return self.floor - PANEL_HEIGHT * _share(value, self.y_span, "linear")
+
+
+def _path(points: Sequence[Point]) -> str:
+    """Points as SVG has them."""
+    return " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+
+
+def _share(value: float, span: tuple[float, float], scale: Scale) -> float:
+    if scale == "log":
+        value, span = math.log(value), (math.log(span[0]), math.log(span[1]))
+    return (value - span[0]) / (span[1] - span[0])
+
+
+def _round_steps(low: float, high: float) -> list[float]:
+    """Round numbers within a span, about six."""
+    size = 10 ** math.floor(math.log10((high - low) / 6))
+    step = next(size * factor for factor in (1, 2, 5, 10, 20) if (high - low) / (size * factor) <= 8)
+    return [round(k * step, 9) for k in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)]
+
+
+def _decades(low: float, high: float) -> list[float]:
+    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    return [value for decade in decades for factor in (1, 2, 5) if low <= (value := factor * 10.0**decade) <= high]

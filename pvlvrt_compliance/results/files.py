@@ -1,0 +1,6 @@
+"""Names of the files of a run, in its output folder."""
+
+WAVEFORMS = "waveforms"
+"""Folder of the records, by the names that results refer to them by."""
+
+RESULTS, JUNIT, REPORT = "results.json", "junit.xml", "report.html"

@@ -1,0 +1,176 @@
+"""One call of a controller from outside: hand over signals, let it work, take its commands."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.measured import Measured
+from pvlvrt_compliance.plant.inverter import K_PWM, limit_modulation
+from pvlvrt_compliance.plant.plant import PlantState, bridge
+from pvlvrt_compliance.plant.protection import NO_TRIP
+from pvlvrt_compliance.simulation.columns import phases_at, put_phases
+from pvlvrt_compliance.simulation.door.exchange import (
+    ACTING_M,
+    COMMANDED_M,
+    COMMANDED_U,
+    COMMANDS,
+    IGNORED_AT,
+    IGNORED_STATUS,
+    LARGEST,
+    LATEST_CALL,
+    SEEN_I,
+    SEEN_U,
+    SIGNAL,
+    TRIP_SEEN,
+)
+from pvlvrt_compliance.simulation.door.native_call import call_address
+from pvlvrt_compliance.simulation.door.ports import PortTable, gather, scatter
+from pvlvrt_compliance.simulation.door.table import DoorTable
+from pvlvrt_compliance.simulation.outcome import (
+    COMPLETED,
+    CONTROLLER_FAILED,
+    OUTPUT_NOT_FINITE,
+    OUTPUT_OUT_OF_RANGE,
+)
+from pvlvrt_compliance.vectors import Phases, scaled, vector_of
+
+IGNORED = -1
+"""No end of a run: a call after a trip that gave no command, or was not made."""
+
+MESSAGE = 1
+"""What a controller's function returns that has something to say."""
+
+_M_MOST, _U_MOST = LARGEST["m_a"], LARGEST["u_a_ref_v"]
+_PER_HALF_LINK = 0.5 / K_PWM  # modulating signal of the paper per one of half the link's voltage
+
+
+@kernel
+def put_signals(
+    x: NDArray[np.float64],
+    t: float,
+    seen: Measured,
+    u_zero: float,
+    plant: PlantState,
+    m: complex,
+    G: float,
+    enabled: float,
+) -> None:
+    """Write what changes with time; the sensors have no part in the bridge's current."""
+    x[SIGNAL.time_s] = t
+    put_phases(x, SEEN_U, seen.u_g_ab, u_zero)
+    put_phases(x, SEEN_I, seen.i_ab, 0.0)
+    x[SIGNAL.v_dc_v] = seen.v_dc
+    x[SIGNAL.i_dc_a] = bridge(limit_modulation(m), plant.i, plant.v_dc, plant.trip != NO_TRIP).i_dc
+    x[SIGNAL.i_pv_a] = seen.i_pv
+    put_phases(x, ACTING_M, scaled(1 / _PER_HALF_LINK, m), 0.0)
+    x[SIGNAL.enabled] = enabled
+    x[SIGNAL.connected] = 1.0 if plant.closed else 0.0
+    x[SIGNAL.irradiance_w_m2] = 1000.0 * G
+
+
+@kernel
+def put_commands(x: NDArray[np.float64], m: complex, v_dc: float) -> None:
+    """Write the commands that a modulating signal stands for."""
+    put_phases(x, COMMANDED_M, scaled(1 / _PER_HALF_LINK, m), 0.0)
+    put_phases(x, COMMANDED_U, scaled(K_PWM * v_dc, m), 0.0)
+
+
+@kernel
+def fault_of(commands: Phases, most: float) -> int:
+    """What is wrong with the commands of three phases, or `COMPLETED`."""
+    for command in (commands.a, commands.b, commands.c):
+        if not math.isfinite(command):
+            return OUTPUT_NOT_FINITE
+        if abs(command) > most:
+            return OUTPUT_OUT_OF_RANGE
+    return COMPLETED
+
+
+@kernel
+def is_well(door: DoorTable, address: int) -> bool:
+    """Call a function of the controller, and have what it says noted; whether all is well."""
+    answer = call_address(address, door.argument)
+    if answer == MESSAGE and door.note_address != 0:
+        answer = call_address(door.note_address, door.argument)
+    well: bool = answer == 0
+    return well
+
+
+@kernel
+def call(door: DoorTable) -> int:
+    """Hand over the signals, let the controller work, take its commands."""
+    gather(door.signals, door.inputs)
+    if not is_well(door, door.address):
+        return CONTROLLER_FAILED
+    scatter(door.outputs, door.commands)
+    if door.in_volts:
+        return fault_of(phases_at(door.commands, COMMANDED_U), _U_MOST)
+    return fault_of(phases_at(door.commands, COMMANDED_M), _M_MOST)
+
+
+@kernel
+def call_or_ignore(door: DoorTable, t: float, is_tripped: bool) -> int:
+    """Let the controller work at an instant (s). After a trip none of its faults counts, and the first ends the calls.
+
+    Commands are out of the plant's reach then: the bridge is blocked. A controller that is still called sees that it
+    is no longer connected, and its further signals are recorded; only one that has failed is left alone.
+
+    Returns
+    -------
+    int
+        How the run goes on: `COMPLETED`; after a trip also `IGNORED`, with no command to take.
+    """
+    progress = door.progress
+    progress[LATEST_CALL] = t
+    if not is_tripped:
+        return call(door)
+    if math.isnan(progress[TRIP_SEEN]):
+        progress[TRIP_SEEN] = t
+    if not door.after_trip or progress[IGNORED_STATUS] == CONTROLLER_FAILED:
+        return IGNORED
+    status = call(door)
+    if status == COMPLETED:
+        return COMPLETED
+    if math.isnan(progress[IGNORED_AT]) or status == CONTROLLER_FAILED:
+        progress[IGNORED_AT], progress[IGNORED_STATUS] = t, float(status)
+    return IGNORED
+
+
+@kernel
+def hold(door: DoorTable, first: bool) -> int:
+    """Tell a controller that it does not act yet: its outputs are set to what acts in its place."""
+    gather(door.commands[: len(COMMANDS)], held_part(door.outputs))
+    gather(door.signals, door.inputs)
+    if first and door.first_address != 0 and not is_well(door, door.first_address):
+        return CONTROLLER_FAILED
+    if door.hold_address != 0 and not is_well(door, door.hold_address):
+        return CONTROLLER_FAILED
+    return COMPLETED
+
+
+@kernel
+def held_part(outputs: PortTable) -> PortTable:
+    """Outputs that command; those that are only recorded come after them."""
+    n = 0
+    while n < len(outputs.signal) and outputs.signal[n] < len(COMMANDS):
+        n += 1
+    return PortTable(
+        memory=outputs.memory,
+        kind=outputs.kind[:n],
+        place=outputs.place[:n],
+        signal=outputs.signal[:n],
+        gain=outputs.gain[:n],
+        offset=outputs.offset[:n],
+    )
+
+
+@kernel
+def commanded(door: DoorTable, v_dc: float) -> complex:
+    """Modulating signal of the paper, within the linear range; voltages go by the link's voltage (V) as sampled."""
+    if door.in_volts:
+        m = scaled(1 / (K_PWM * max(v_dc, 1.0)), vector_of(phases_at(door.commands, COMMANDED_U)))
+    else:
+        m = scaled(_PER_HALF_LINK, vector_of(phases_at(door.commands, COMMANDED_M)))
+    return limit_modulation(m)

@@ -1,0 +1,76 @@
+"""What passes between the loop and a controller from outside, by name: signals, commands, and what is told of a run."""
+
+from typing import NamedTuple
+
+from pvlvrt_compliance.places import PhasePlaces, numbered
+
+
+class ChangingSignals(NamedTuple):
+    """What a controller can be given that the loop writes before every call."""
+
+    time_s: int
+    u_a_v: int
+    u_b_v: int
+    u_c_v: int
+    i_a_a: int
+    i_b_a: int
+    i_c_a: int
+    v_dc_v: int
+    i_dc_a: int
+    i_pv_a: int
+    m_a: int
+    m_b: int
+    m_c: int
+    enabled: int
+    connected: int
+    irradiance_w_m2: int
+
+
+class FixedSignals(NamedTuple):
+    """What it can be given that stays as it is in a run."""
+
+    p_set_w: int
+    q_set_var: int
+    frequency_nominal_hz: int
+    apparent_power_nominal_va: int
+    voltage_nominal_v: int
+
+
+class Commands(NamedTuple):
+    """What it can command: u_inv = m v_DC / 2, phase to the middle of the link, or that voltage itself (V)."""
+
+    m_a: int
+    m_b: int
+    m_c: int
+    u_a_ref_v: int
+    u_b_ref_v: int
+    u_c_ref_v: int
+
+
+SIGNAL = numbered(ChangingSignals)
+COMMAND = numbered(Commands)
+
+SIGNALS = (*ChangingSignals._fields, *FixedSignals._fields)
+"""What a controller can be given, in the order of the signals that its input ports are mapped to."""
+
+COMMANDS = Commands._fields
+"""What it can command, in the order that its output ports are mapped to."""
+
+SEEN_U = PhasePlaces(SIGNAL.u_a_v, SIGNAL.u_b_v, SIGNAL.u_c_v)
+SEEN_I = PhasePlaces(SIGNAL.i_a_a, SIGNAL.i_b_a, SIGNAL.i_c_a)
+ACTING_M = PhasePlaces(SIGNAL.m_a, SIGNAL.m_b, SIGNAL.m_c)
+"""Signals of three phases."""
+
+COMMANDED_M = PhasePlaces(COMMAND.m_a, COMMAND.m_b, COMMAND.m_c)
+COMMANDED_U = PhasePlaces(COMMAND.u_a_ref_v, COMMAND.u_b_ref_v, COMMAND.u_c_ref_v)
+"""The two kinds of commands."""
+
+LARGEST = {"m_a": 10.0, "u_a_ref_v": 1e5}
+"""Largest command of either kind that is taken for one (-, V)."""
+
+LATEST_CALL, TRIP_SEEN, IGNORED_AT, IGNORED_STATUS = range(4)
+"""What a run tells of its progress: instants (s) of the latest call, of the first after a trip, and of the first fault
+of the controller after it, with how that would have ended the run."""
+
+PROGRESSES = len((LATEST_CALL, TRIP_SEEN, IGNORED_AT, IGNORED_STATUS))
+"""Numbers of it."""

@@ -1,0 +1,158 @@
+"""Every parameter of a run but its scenario, in words with units: what `--set` reaches.
+
+Those of plant, hardware and controller stand in the room that they parametrise. No kernel is imported on the way: help,
+profiles and the judging of records never pay for the compiler.
+"""
+
+import json
+import math
+from collections.abc import Iterable
+from typing import Annotated, Any, Literal, get_origin
+
+from pydantic import Field, FiniteFloat, ValidationError
+
+from pvlvrt_compliance.control.parameters import ControllerParameters
+from pvlvrt_compliance.errors import UsageError, did_you_mean
+from pvlvrt_compliance.hardware.parameters import SensorParameters
+from pvlvrt_compliance.parameter_group import ParameterGroup, Positive
+from pvlvrt_compliance.plant.parameters import PlantParameters, ProtectionParameters
+
+Fidelity = Literal["averaged", "switched"]
+
+
+class SimulationParameters(ParameterGroup):
+    """How closely the inverter is modelled, the two rates, and the unrecorded time before a record."""
+
+    fidelity: Fidelity = Field(
+        default="averaged", description="the mean over a carrier period, or every leg as it switches"
+    )
+    plant_step_us: Positive = 5.1196
+    control_ratio: int = Field(default=8, ge=1, le=1000, description="plant steps in a control period")
+    settling_s: Annotated[FiniteFloat, Field(ge=0, le=60)] = Field(
+        default=0.5, description="before a record, not judged; with a controller of the user's own 1 s unless set"
+    )
+    record_settling: bool = Field(
+        default=False,
+        description="write the settling into the waveforms, too, at times below 0; what is judged stays the same",
+    )
+    synchronising_s: Annotated[FiniteFloat, Field(ge=0, le=60)] = Field(
+        default=0.2,
+        description="before settling: a controller of the user's own sees the steady state, and does not act yet",
+    )
+    time_limit_s: Positive | None = Field(
+        default=None,
+        description="of computing, for one run of a user's own controller; none: 60 s and 20 times the run's length",
+    )
+
+
+class Parameters(ParameterGroup):
+    """All parameters of a run but its scenario."""
+
+    simulation: SimulationParameters = SimulationParameters()
+    plant: PlantParameters = PlantParameters()
+    protection: ProtectionParameters = ProtectionParameters()
+    sensors: SensorParameters = SensorParameters()
+    controller: ControllerParameters = ControllerParameters()
+
+
+def parameter_names() -> list[str]:
+    """All names that `--set` takes, as ``group.name``."""
+    return [
+        f"{group}.{name}"
+        for group, field in Parameters.model_fields.items()
+        for name in field.annotation.model_fields  # type: ignore[union-attr]
+    ]
+
+
+def parameters_from(assignments: Iterable[str]) -> Parameters:
+    """Defaults with ``group.name=value`` applied; values are written as in JSON, words also without quotes.
+
+    Raises
+    ------
+    UsageError
+        When a name is unknown (with the near misses), given twice, or a value is not allowed.
+    """
+    known = parameter_names()
+    groups: dict[str, dict[str, Any]] = {}
+    for assignment in assignments:
+        name, equals, text = assignment.partition("=")
+        name = name.strip()
+        if not equals:
+            raise UsageError(f"--set {assignment}: write --set group.name=value")
+        if name not in known:
+            raise UsageError(f"--set {name}: unknown parameter{did_you_mean(name, known)}")
+        group, _, key = name.partition(".")
+        if key in groups.setdefault(group, {}):
+            raise UsageError(f"--set {name}: given twice")
+        groups[group][key] = _value(name, text)
+    try:
+        # As JSON and strict: a list is a tuple there, but neither true nor "1.2" is a number.
+        return Parameters.model_validate_json(json.dumps(groups), strict=True)
+    except ValidationError as error:
+        raise UsageError("; ".join(_problem(e["loc"], e["msg"]) for e in error.errors())) from None
+
+
+OF_THE_HOST = frozenset({"computation_delay_samples"})
+"""Names in the group ``controller`` that say how any controller is run, also one of the user's own."""
+
+
+def own_parameters(assignments: Iterable[str]) -> tuple[dict[str, float | int | bool | str], tuple[str, ...]]:
+    """Split ``controller.NAME=value``, the parameters of a user's own controller, from the assignments that are not.
+
+    Returns
+    -------
+    tuple of dict and tuple
+        Values by name, a word where it is not JSON; the other assignments as they are.
+
+    Raises
+    ------
+    UsageError
+        When a name is given twice, or a value is not a number, a word or a switch.
+    """
+    own: dict[str, float | int | bool | str] = {}
+    others = []
+    for assignment in assignments:
+        name, equals, text = assignment.partition("=")
+        group, _, key = name.strip().partition(".")
+        if not equals or group != "controller" or key in OF_THE_HOST:
+            others.append(assignment)
+            continue
+        if key in own:
+            raise UsageError(f"--set {name}: given twice")
+        own[key] = _plain_value(name, text)
+    return own, tuple(others)
+
+
+def _plain_value(name: str, text: str) -> float | int | bool | str:
+    try:
+        value = json.loads(text, parse_constant=_refuse)
+    except (ValueError, RecursionError):
+        value = text.strip()
+    if isinstance(value, float) and not math.isfinite(value):
+        raise UsageError(f"--set {name}: {text} is not a number that can be used")
+    if not isinstance(value, (bool, int, float, str)):
+        raise UsageError(f"--set {name}: {text!r} is not a number, true, false or a word")
+    return value
+
+
+def _takes_words(name: str) -> bool:
+    group, _, key = name.partition(".")
+    annotation: Any = Parameters.model_fields[group].annotation
+    return get_origin(annotation.model_fields[key].annotation) is Literal
+
+
+def _value(name: str, text: str) -> Any:
+    try:
+        return json.loads(text, parse_constant=_refuse)
+    except (ValueError, RecursionError):
+        if _takes_words(name):
+            return text.strip()
+        raise UsageError(f"--set {name}: {text!r} is not a value; write a number, true, false, null or [..]") from None
+
+
+def _refuse(constant: str) -> None:
+    raise ValueError(f"{constant} is not a number that can be used")
+
+
+def _problem(location: tuple[int | str, ...], message: str) -> str:
+    return f"--set {'.'.join(str(part) for part in location)}: {message.removeprefix('Value error, ')}"

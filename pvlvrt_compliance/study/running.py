@@ -1,0 +1,220 @@
+"""A whole run: from a job to its results, and to its files where a folder is named."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager, closing, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pvlvrt_compliance.checks.evaluate import summarise
+from pvlvrt_compliance.errors import OutputError
+from pvlvrt_compliance.profile.procedure import TestCase
+from pvlvrt_compliance.profile.profile import Profile
+from pvlvrt_compliance.results import Results, TestResult, conclude
+from pvlvrt_compliance.results.files import RESULTS
+from pvlvrt_compliance.study.job import Job, Spell
+from pvlvrt_compliance.study.named import Named
+from pvlvrt_compliance.study.opening import open_controller
+from pvlvrt_compliance.study.provenance import created_at, provenance
+from pvlvrt_compliance.study.records import Records
+from pvlvrt_compliance.study.selection import Assignment
+from pvlvrt_compliance.study.session import Progress, session
+from pvlvrt_compliance.study.store import OutputFolder
+
+if TYPE_CHECKING:
+    from pvlvrt_compliance.controllers.simulator import ForeignSimulator
+
+Render = Callable[[Results, Mapping[str, Any]], str | bytes]
+"""Writes results, with what was made of the records by the key of the test, as one file."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Output:
+    """Where the files of a run go, and what they are besides the waveforms.
+
+    Parameters
+    ----------
+    folder : str
+        As the user named it.
+    formats : mapping
+        What renders each file, by its name, in the order in which they are staged; `RESULTS` among them.
+    drawing : Named
+        Makes of each record what they show of it.
+    csv : bool
+        Whether waveforms are written as CSV, too.
+    spell : callable
+        How whoever asks writes ``output``, as of `make_job`.
+    """
+
+    folder: str
+    formats: Mapping[str, Render]
+    drawing: Named
+    csv: bool = False
+    spell: Spell = str
+
+
+def run_job(
+    job: Job,
+    *,
+    command: Sequence[str] | str,
+    output: Output | None = None,
+    allow_unjudged: bool = False,
+    watch: AbstractContextManager[Progress | None] | None = None,
+    tell: Callable[[str], None] = lambda _: None,
+) -> Results:
+    """Run a job.
+
+    Parameters
+    ----------
+    job : Job
+        What is to be run.
+    command : sequence of str or str
+        What makes the run again: words of a command line, or a text.
+    output : Output, optional
+        Where its files go; without, nothing is written.
+    allow_unjudged : bool
+        Kept with the results, for their exit status.
+    watch : context manager, optional
+        Entered while tests are run; gives what is told of each before it is (`session.Progress`).
+    tell : callable, optional
+        Is given what there is to know besides: of the output folder, and what a controller of the user's own has said.
+
+    Raises
+    ------
+    UsageError
+        When the controller or the output folder cannot be used.
+    OutputError
+        When something cannot be written; says what has become of the finished tests.
+    BaseException
+        Whatever else ends the run early, Ctrl-C among it, with a note (`__notes__`) that says so, too: finished tests
+        are kept apart from the files of the last whole run.
+    """
+    controller = open_controller(job)
+    told = _tell_new(controller, 0, tell)
+    run = _Run(job, controller, command, output, allow_unjudged)
+    try:
+        run.tell_of_folder(tell)
+        with watch or nullcontext() as progress:
+            run.simulate(progress)
+        results = run.deliver()
+    except OutputError as error:
+        raise OutputError(f"{error}; {run.keep_unfinished()}") from error
+    except OSError as error:
+        named = f"{error.filename}: {error.strerror}" if error.filename else str(error)
+        raise OutputError(f"{named}; {run.keep_unfinished()}") from error
+    except BaseException as error:
+        error.add_note(run.keep_unfinished())
+        raise
+    finally:
+        run.discard()  # a signal may have come while what was finished was kept
+    _tell_new(controller, told, tell)
+    return results
+
+
+def _tell_new(controller: "ForeignSimulator | None", told: int, tell: Callable[[str], None]) -> int:
+    """Say what there is to know of the user's own controller, or what it has said itself; how much that is so far."""
+    if controller is None:
+        return 0
+    for note in controller.notes[told:]:
+        tell(f"{controller.spec}: {note}")
+    return len(controller.notes)
+
+
+class _Run:
+    """One run: the tests that are finished, what was made of them, and where its files go."""
+
+    def __init__(
+        self,
+        job: Job,
+        controller: "ForeignSimulator | None",
+        command: Sequence[str] | str,
+        output: Output | None,
+        allow_unjudged: bool,
+    ) -> None:
+        self._job = job
+        self._controller = controller
+        self._command = command
+        self._output = output
+        self._allow_unjudged = allow_unjudged
+        self._created = created_at()
+        self._finished: list[TestResult] = []
+        self._made: dict[str, Any] = {}
+        self._folder = OutputFolder(output.folder, output.spell) if output else None
+        self._records = Records(self._folder, job, self._created, csv=output.csv) if output and self._folder else None
+
+    def tell_of_folder(self, tell: Callable[[str], None]) -> None:
+        """Say what was found in the output folder."""
+        for note in self._folder.notes if self._folder else ():
+            tell(note)
+
+    def simulate(self, progress: Progress | None) -> None:
+        """Run every test; waveforms are written and drawn at once, so that they need not be kept."""
+        stream = session(
+            self._job,
+            each=self._output.drawing if self._output else None,
+            keep=self._records.keep if self._records else None,
+            progress=progress,
+            controller=self._controller,
+        )
+        with closing(stream):
+            for tested in stream:
+                if tested.made is not None:
+                    self._made[tested.result.key] = tested.made
+                self._finished.append(tested.result)
+
+    def deliver(self) -> Results:
+        """The results; with an output folder, all reports are put in their places."""
+        results = self._results()
+        if self._output and self._folder:
+            for name, render in self._output.formats.items():
+                self._folder.write(name, render(results, self._made))
+            self._folder.finish()
+        return results
+
+    def keep_unfinished(self) -> str:
+        """Keep the finished tests apart from the reports of the last whole run; what has become of them, in words."""
+        count = f"{len(self._finished)} of {len(self._job.tests)} tests were finished"
+        if self._folder is None:
+            return count
+        said = "nothing was written"
+        if self._folder.is_placed:
+            said = f"all files are in {self._folder.folder}"
+        elif self._folder.is_stuck:
+            said = "they wait there"
+        elif self._finished:
+            try:
+                return f"{count} and are kept in {self._keep_interrupted(self._folder)}"
+            except (OutputError, OSError) as error:
+                said = f"they could not be kept: {error}"
+        self._folder.discard()
+        return f"{count}, {said}"
+
+    def discard(self) -> None:
+        """Leave no trace of what is not in its place."""
+        if self._folder:
+            self._folder.discard()
+
+    def _keep_interrupted(self, folder: OutputFolder) -> Path:
+        """Keep records and results; the reports of an interrupted run nobody looks for."""
+        assert self._output is not None
+        assert self._records is not None
+        folder.drop_all_but(self._records.names)
+        folder.write(RESULTS, self._output.formats[RESULTS](self._results(), self._made))
+        return folder.keep_interrupted()
+
+    def _results(self) -> Results:
+        """What is finished, as one result object, in the order of the profiles."""
+        job = self._job
+        own = self._controller.provenance(job.parameters) if self._controller else {}
+        origin = provenance(job.profiles, job.parameters, self._command, self._created, own)
+        summaries = [
+            summarise(profile, *(_of(profile, items) for items in (job.tests, job.left_out)))
+            for profile in job.profiles
+        ]
+        order = [profile.id for profile in job.profiles]
+        finished = sorted(self._finished, key=lambda test: order.index(test.profile))
+        return conclude(finished, summaries, origin, allow_unjudged=self._allow_unjudged)
+
+
+def _of(profile: Profile, items: Iterable[Assignment]) -> list[TestCase]:
+    return [item.test for item in items if item.profile is profile]

@@ -1,0 +1,54 @@
+"""What a port's name alone means."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ports import port
+from pvlvrt_compliance.controllers.mapping.names import guess_input
+from pvlvrt_compliance.controllers.mapping.sides import map_inputs
+from pvlvrt_compliance.simulation.door.exchange import SIGNALS
+from pvlvrt_compliance.units import Nominal
+
+NOMINAL = Nominal()
+
+
+@pytest.mark.parametrize(
+    ("names", "signal"),
+    [
+        ("Va va V_a ua u_a VA_grid vga Vpcc_a u_a_v Va_meas U_A_PU vat", "u_a_v"),
+        ("Vb ub u_b Vgb Vb_pcc", "u_b_v"),
+        ("Ia ia I_a IaInv i_a_a ILa iga Ia_kA", "i_a_a"),
+        ("Ic ic IcInv", "i_c_a"),
+        ("Vdc vdc Udc V_DC Vdc_kV v_dc_v Vdc_meas Vdclink", "v_dc_v"),
+        ("Idc", "i_dc_a"),
+        ("Ipv i_pv I_PV", "i_pv_a"),
+        ("Pref P_ref pset p_set_w", "p_set_w"),
+        ("Qref q_ref Qset", "q_set_var"),
+        ("time t Time currTime", "time_s"),
+        ("ma m_a", "m_a"),
+        ("enable enabled", "enabled"),
+        ("fnom", "frequency_nominal_hz"),
+    ],
+)
+def test_usual_names_are_understood(names, signal):
+    """A name that can mean one signal only is tied to it, however it is spelled."""
+    for name in names.split():
+        assert guess_input(name, 1).names == (signal,), name
+
+
+@pytest.mark.parametrize("name", ["V", "I", "P", "Q", "Vref", "Vab", "Vnom", "freq", "Ea"])
+def test_names_with_two_meanings_are_left_and_said_so(name):
+    """Nothing is tied on a guess; the port's note says what is not clear."""
+    mapped = map_inputs([port(name)], None, NOMINAL)
+    assert mapped.elements == ()
+    assert mapped.unmapped == (name,)
+    assert mapped.ports[0].note
+
+
+@given(st.text(max_size=20), st.integers(1, 4))
+def test_any_name_is_tied_to_what_there_is_or_to_nothing(name, width):
+    """Whatever a controller calls its ports, inspection does not fail, and every element is accounted for."""
+    mapped = map_inputs([port(name, width=width)], None, NOMINAL)
+    assert len(mapped.elements) + len(mapped.unmapped) == width
+    assert all(0 <= element.signal < len(SIGNALS) for element in mapped.elements)

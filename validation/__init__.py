@@ -1,0 +1,5 @@
+"""Evidence: what other programs, closed forms and wrong controllers say of the simulator and of the checks.
+
+Each folder writes one page of `docs/`: ``python -m validation.simulator``, ``.mutations``, ``.grid_codes``,
+``.fidelity``, ``.paper``, from the checkout; with ``--check`` it compares and writes nothing.
+"""

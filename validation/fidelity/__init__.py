@@ -1,0 +1,1 @@
+"""Averaged and switched inverter side by side: docs/fidelity.md."""

@@ -1,0 +1,1 @@
+"""What every shipped profile says of the paper's controller: docs/grid-codes.md."""

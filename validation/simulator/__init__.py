@@ -1,0 +1,1 @@
+"""The simulator beside other programs, closed forms and the paper: docs/validation.md."""
