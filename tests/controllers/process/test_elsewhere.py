@@ -130,6 +130,7 @@ def test_a_record_is_judged(elsewhere):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("elsewhere", ["win32"], indirect=True)  # which lacks what the other does, and more
 def test_a_run_writes_its_files(elsewhere, tmp_path):
     """The main job, with the lock of its folder, comes to the same verdicts."""
     out = tmp_path / "out"
