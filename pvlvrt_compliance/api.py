@@ -6,18 +6,19 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import fields
 from os import PathLike, fspath
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from pvlvrt_compliance.checks.kinds import INSTALLED_KINDS
+from pvlvrt_compliance.output import output_in, report_details
 from pvlvrt_compliance.profile import loading
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.results import Results
-from pvlvrt_compliance.study.job import Asked, Factory, Spell, make_job
+from pvlvrt_compliance.study.job import Asked, Factory, make_job
 
 if TYPE_CHECKING:
     from pvlvrt_compliance.scenario.events import Event
     from pvlvrt_compliance.scenario.scenario import Scenario
-    from pvlvrt_compliance.study.running import Output
     from pvlvrt_compliance.study.session import Progress
     from pvlvrt_compliance.units import Nominal
     from pvlvrt_compliance.waveforms import Waveforms
@@ -72,6 +73,9 @@ def check(
     output: File | None = None,
     csv: bool = False,
     waveforms: str = "all",
+    formats: str | Sequence[str] = (),
+    language: str = "en",
+    report_fields: Mapping[str, str] = MappingProxyType({}),
     allow_unjudged: bool = False,
     progress: "Progress | None" = None,
 ) -> Results:
@@ -109,6 +113,12 @@ def check(
         Folder for the files that the command writes; without, none is written.
     csv, waveforms
         Of these: whether waveforms are CSV, too; which are kept, ``"all"``, ``"failed"`` or ``"none"``.
+    formats : str or sequence of str
+        Further reports: ``"pdf"``, which needs the extra of that name.
+    language : str
+        Of the reports: ``"en"`` or ``"es"``.
+    report_fields : mapping
+        Of their title page: `client`, `number`, `revision`, ....
     allow_unjudged : bool
         As of the command, for `exit_status`.
     progress : callable, optional
@@ -159,7 +169,16 @@ def check(
     return run_job(
         job,
         command=_call("check", {**_told(asked), **({"allow_unjudged": True} if allow_unjudged else {})}),
-        output=None if output is None else output_in(fspath(output), len(job.tests), csv=csv, spell=_spell),
+        output=None
+        if output is None
+        else output_in(
+            fspath(output),
+            len(job.tests),
+            csv=csv,
+            spell=_spell,
+            formats=(formats,) if isinstance(formats, str) else formats,
+            details=report_details(language, report_fields, spell=_spell),
+        ),
         allow_unjudged=allow_unjudged,
         watch=nullcontext(progress),
         tell=_LOG.info,
@@ -214,26 +233,6 @@ def evaluate(
         test=test,
         nominal=nominal,
         available_power_kw=available_power_kw,
-    )
-
-
-def output_in(folder: str, tests: int, *, csv: bool = False, spell: Spell = str) -> "Output":
-    """What a run of so many tests writes into a folder: waveforms, and every file that the command writes.
-
-    ``spell`` is how whoever asks writes ``output``, as of `make_job`.
-    """
-    from pvlvrt_compliance.report.drawing import OF_A_TEST
-    from pvlvrt_compliance.report.drawing.parts import buckets_for
-    from pvlvrt_compliance.report.formats import formats
-    from pvlvrt_compliance.study.named import Named
-    from pvlvrt_compliance.study.running import Output
-
-    return Output(
-        folder=folder,
-        formats={written.file: written.render for written in formats()},
-        drawing=Named(OF_A_TEST, {"buckets": buckets_for(tests)}),
-        csv=csv,
-        spell=spell,
     )
 
 

@@ -24,7 +24,9 @@ ALLOWED = {
     # The public API.
     "__init__": {"api", "errors", "profile", "results", "scenario", "units", "waveforms"},  # each when first used
     # The public functions; they hand reports to the run, which knows none.
-    "api": {"checks", "profile", "report", "results", "scenario", "study", "units", "waveforms"},
+    "api": {"checks", "output", "profile", "results", "scenario", "study", "units", "waveforms"},
+    # What a run writes.
+    "output": {"errors", "report", "results", "study", "texts"},
     "__main__": {"cli"},
     # One file a format, and how a figure is drawn.
     "report": COMMON | {"data", "disturbance", "evidence", "results", "waveforms", "profile"},

@@ -9,17 +9,20 @@ from pvlvrt_compliance.disturbance.model import Disturbance, Stretch
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require_finite, required
 from pvlvrt_compliance.profile.requirements import CustomRequirement, Requirement
-from pvlvrt_compliance.results import Band, Status, Verdict
+from pvlvrt_compliance.results import Band, Characteristic, Drawn, Instant, Spectrum, SpectrumBar, Status, Verdict
 
 __all__ = [
     "Band",
+    "Characteristic",
     "Check",
     "Choice",
     "CustomRequirement",
     "Disturbance",
+    "Drawn",
     "Evidence",
     "Flag",
     "Fraction",
+    "Instant",
     "MeasurementError",
     "NotApplicable",
     "NotNegative",
@@ -29,6 +32,8 @@ __all__ = [
     "Positive",
     "Requirement",
     "RowCheck",
+    "Spectrum",
+    "SpectrumBar",
     "Status",
     "Stretch",
     "StretchCheck",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from pvlvrt_compliance.profile.requirements.base import Requirement
-from pvlvrt_compliance.results import Band, Status, TestResult, Verdict
+from pvlvrt_compliance.results import Drawn, Status, TestResult, Verdict
 
 if TYPE_CHECKING:
     from pvlvrt_compliance.disturbance.model import Stretch
@@ -62,8 +62,12 @@ class Check(ABC):
         """
         return None
 
-    def limits(self, requirement: Any, evidence: "Evidence") -> tuple[Band, ...]:  # noqa: ARG002
-        """What a figure draws of the requirement, in a record that it was judged in."""
+    def limits(self, requirement: Any, evidence: "Evidence") -> tuple[Drawn, ...]:  # noqa: ARG002
+        """What a figure draws of the requirement, in a record that it was judged in.
+
+        Limits over time (`Band`), by order (`Spectrum`) or over another quantity (`Characteristic`), and when what a
+        time is demanded of has come (`Instant`).
+        """
         return ()
 
 

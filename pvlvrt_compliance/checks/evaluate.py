@@ -1,6 +1,6 @@
 """One record against one profile: every requirement becomes a verdict, whatever the record is like."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 
 from pvlvrt_compliance.checks.check import Check, RowCheck
 from pvlvrt_compliance.checks.judging import in_words, judge_safely, limits_safely
@@ -10,14 +10,34 @@ from pvlvrt_compliance.checks.verdicts import unjudged
 from pvlvrt_compliance.disturbance.model import Disturbance
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.evidence.collect import collect, disturbance_of
-from pvlvrt_compliance.evidence.evidence import Evidence
+from pvlvrt_compliance.evidence.cursors import cursors_of
+from pvlvrt_compliance.evidence.evidence import Evidence, after_trip
 from pvlvrt_compliance.measure.quantities import MeasuredWindows
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.requirements import Requirement
-from pvlvrt_compliance.results import Band, ProfileSummary, Rating, Status, TestResult, Verdict, worst
+from pvlvrt_compliance.results import (
+    Band,
+    Characteristic,
+    Drawn,
+    Instant,
+    Rating,
+    Spectrum,
+    Status,
+    TestResult,
+    Verdict,
+    worst,
+)
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Waveforms
+
+_FIELDS: dict[str, type[Drawn]] = {
+    "bands": Band,
+    "spectra": Spectrum,
+    "characteristics": Characteristic,
+    "instants": Instant,
+}
+"""Where a result has what is drawn."""
 
 _JUDGED = (Status.PASS, Status.FAIL)
 _OF_ONE_SAG = 2  # stretches: the sag, and what follows it
@@ -70,12 +90,13 @@ def evidence_of(
 
 def judge_record(profile: Profile, test: TestCase, evidence: Evidence) -> TestResult:
     """Judge the evidence of one record by every requirement of a profile, as `evaluate` does."""
-    verdicts, bands = _judge_all(profile, test, evidence)
+    verdicts, drawn = _judge_all(profile, test, evidence)
     result = _result(profile, test, verdicts, evidence.disturbance)
     nominal, waveforms = evidence.nominal, evidence.waveforms
     found = {
-        "bands": bands,
+        **{name: tuple(one for one in drawn if isinstance(one, kind)) for name, kind in _FIELDS.items()},
         "measurements": _measurements(evidence),
+        "cursors": cursors_of(evidence, {one.quantity for one in drawn if isinstance(one, Band)}),
         "duration_s": waveforms.end_s - waveforms.t0_s,
         "trip_cause": evidence.trip_cause,
         "rating": Rating(
@@ -103,17 +124,6 @@ def errored(profile: Profile, test: TestCase, reason: str) -> TestResult:
     """Result of a test that gave no waveforms to judge: every requirement is an `error` with the reason."""
     verdicts = [unjudged(kind, requirement, Status.ERROR, reason) for kind, requirement in demands_of(profile, test)]
     return _result(profile, test, verdicts, disturbance_of(profile, test))
-
-
-def summarise(profile: Profile, tests: Iterable[TestCase], left_out: Iterable[TestCase] = ()) -> ProfileSummary:
-    """The profile as a report on these tests shows it, with what is not verified and what was left out."""
-    return ProfileSummary(
-        id=profile.id,
-        title=profile.title,
-        digest=profile.digest,
-        notes=profile.unverified({test.id for test in tests}),
-        left_out=tuple(test.id for test in left_out),
-    )
 
 
 def demands_of(profile: Profile, test: TestCase) -> list[tuple[str, Requirement]]:
@@ -153,7 +163,7 @@ def _judges_of_connection(profile: Profile) -> list[tuple[str, Requirement, Chec
     return found
 
 
-def _judge_all(profile: Profile, test: TestCase, evidence: Evidence) -> tuple[list[Verdict], tuple[Band, ...]]:
+def _judge_all(profile: Profile, test: TestCase, evidence: Evidence) -> tuple[list[Verdict], tuple[Drawn, ...]]:
     demands = demands_of(profile, test)
     try:
         reason = reason_not_to_count(profile.conditions, evidence)
@@ -166,7 +176,7 @@ def _judge_all(profile: Profile, test: TestCase, evidence: Evidence) -> tuple[li
     verdicts = [verdict for verdict, _ in judged]
     if test.expect != "may_trip":
         verdicts = _not_let_off_altogether(verdicts)
-    return verdicts, tuple(band for _, bands in judged for band in bands)
+    return verdicts, tuple(one for _, drawn in judged for one in drawn)
 
 
 def _left_out_connection(
@@ -188,7 +198,7 @@ def _not_let_off_altogether(verdicts: list[Verdict]) -> list[Verdict]:
     return [first.model_copy(update={"status": Status.NOT_EVALUATED, "message": message}), *verdicts[1:]]
 
 
-def _judge(kind: str, requirement: Requirement, evidence: Evidence) -> tuple[Verdict, tuple[Band, ...]]:
+def _judge(kind: str, requirement: Requirement, evidence: Evidence) -> tuple[Verdict, tuple[Drawn, ...]]:
     """The verdict, and what a figure draws beside it."""
     try:
         check = find_check(kind)
@@ -202,7 +212,7 @@ def _judge(kind: str, requirement: Requirement, evidence: Evidence) -> tuple[Ver
     return _with_limits(check, requirement, evidence)
 
 
-def _with_limits(check: Check, requirement: Requirement, evidence: Evidence) -> tuple[Verdict, tuple[Band, ...]]:
+def _with_limits(check: Check, requirement: Requirement, evidence: Evidence) -> tuple[Verdict, tuple[Drawn, ...]]:
     verdict = judge_safely(check, requirement, evidence)
     return verdict, limits_safely(check, requirement, evidence) if verdict.status in _JUDGED else ()
 
@@ -216,7 +226,7 @@ def _stop(evidence: Evidence) -> str | None:
     if opened_s is None:
         return None
     cause = f" by the {evidence.trip_cause}" if evidence.trip_cause else ""
-    return f"not judged after the trip at {opened_s:.3f} s{cause}"
+    return f"{after_trip(opened_s)}{cause}"
 
 
 def _result(profile: Profile, test: TestCase, verdicts: list[Verdict], disturbance: Disturbance) -> TestResult:

@@ -5,7 +5,7 @@ from pvlvrt_compliance.checks.verdicts import unjudged
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
 from pvlvrt_compliance.profile.requirements import Requirement
-from pvlvrt_compliance.results import Band, Status, Verdict
+from pvlvrt_compliance.results import Drawn, Status, Verdict
 
 
 def judge_safely(check: Check, requirement: Requirement, evidence: Evidence) -> Verdict:
@@ -28,7 +28,7 @@ def judge_safely(check: Check, requirement: Requirement, evidence: Evidence) -> 
     return verdict
 
 
-def limits_safely(check: Check, requirement: Requirement, evidence: Evidence) -> tuple[Band, ...]:
+def limits_safely(check: Check, requirement: Requirement, evidence: Evidence) -> tuple[Drawn, ...]:
     """What a figure draws of a requirement; nothing where the check cannot say."""
     try:
         return tuple(check.limits(requirement, evidence))

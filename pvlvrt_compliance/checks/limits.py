@@ -11,20 +11,21 @@ from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
 from pvlvrt_compliance.evidence.outline import bends
 from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.measure.swing import without_line
-from pvlvrt_compliance.results import Band
+from pvlvrt_compliance.results import Band, Drawn
 from pvlvrt_compliance.waveforms.container import Samples
 
 _FINE = 1e-3  # part of the largest value: how far a limit that is drawn may be from one that changes all along
 
 Part = TypeVar("Part")
+Kind = TypeVar("Kind", bound=Drawn)
 
 
-def of_each(parts: Iterable[Part], bands: Callable[[Part], Iterable[Band]]) -> tuple[Band, ...]:
-    """Bands of those parts of a record that can be judged."""
-    found: list[Band] = []
+def of_each(parts: Iterable[Part], drawn: Callable[[Part], Iterable[Kind]]) -> tuple[Kind, ...]:
+    """What is drawn of those parts of a record that can be judged."""
+    found: list[Kind] = []
     for part in parts:
         with suppress(NotApplicable, MeasurementError):
-            found += bands(part)
+            found += drawn(part)
     return tuple(found)
 
 
@@ -91,7 +92,15 @@ def along(
 
 
 def about_the_line(
-    check: str, quantity: str, name: str, evidence: Evidence, inside: Mask, x: Samples, room: float
+    check: str,
+    quantity: str,
+    name: str,
+    evidence: Evidence,
+    inside: Mask,
+    x: Samples,
+    room: float,
+    *,
+    half_cycle: bool = False,
 ) -> Band:
     """What a series may swing by about its straight line: so wide in all, in the middle of where it swings."""
     t_s, values = evidence.t_s[inside], x[inside]
@@ -105,6 +114,8 @@ def about_the_line(
         t_s=(float(t_s[0]), float(t_s[-1])),
         lower=tuple(end - room / 2 for end in ends),
         upper=tuple(end + room / 2 for end in ends),
+        about_its_line=True,
+        half_cycle=half_cycle,
     )
 
 

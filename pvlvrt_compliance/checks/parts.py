@@ -9,11 +9,10 @@ from pvlvrt_compliance.data.marks import Marked
 from pvlvrt_compliance.evidence.evidence import NotApplicable
 from pvlvrt_compliance.profile.requirements import Requirement
 from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.results.digits import digits_of
 
 # In the unit of the limit: far finer than any sensor, far coarser than what rounding adds up to.
 _NOISE = 0.5e-9
-
-_DIGITS, _MOST_DECIMALS = 4, 6  # that a limit is told with
 
 
 class Part(NamedTuple):
@@ -74,14 +73,11 @@ def judged_by_parts(
     if not parts:
         raise NotApplicable("the profile states no limit for this test")
     worst = min(parts, key=lambda part: (part.passed, nearest(part)))
-    measured, margin, limit = (
-        _text(x, worst.limit, worst.unit) for x in (worst.measured, abs(worst.margin), worst.limit)
-    )
-    return judged(
+    verdict = judged(
         kind,
         requirement,
         pass_or_fail(worst.passed),
-        f"{worst.what}: {measured}, {margin} {'within' if worst.passed else 'beyond'} the limit of {limit}",
+        "",
         measured=worst.measured,
         limit=worst.limit,
         margin=worst.margin,
@@ -91,10 +87,13 @@ def judged_by_parts(
         bound="at_most",
         uncertainty=worst.uncertainty,
     )
+    return verdict.model_copy(update={"message": _message(worst, verdict)})
 
 
-def _text(value: float, limit: float, unit: str) -> str:
-    """A number as finely as its limit is told: nothing reads as a power of ten beside it."""
-    scale = abs(limit) or abs(value)
-    decimals = min(max(_DIGITS - 1 - math.floor(math.log10(scale)), 0), _MOST_DECIMALS) if scale > 0 else 0
-    return f"{value:.{decimals}f} {unit}".rstrip()
+def _message(part: Part, verdict: Verdict) -> str:
+    """What was measured and how far it is from its limit, with the digits of the verdict's own row."""
+    places, margin = digits_of(verdict)
+    measured, distance, limit = (
+        f"{value:.{places}f} {part.unit}".rstrip() for value in (part.measured, abs(margin or 0.0), part.limit)
+    )
+    return f"{part.what}: {measured}, {distance} {'within' if part.passed else 'beyond'} the limit of {limit}"

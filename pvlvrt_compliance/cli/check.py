@@ -160,6 +160,28 @@ def check(
         str,
         typer.Option(metavar="WHICH", help="Waveforms kept: all, failed or none.", rich_help_panel=_OUTPUT),
     ] = "all",
+    formats: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--format",
+            metavar="NAME",
+            help="A further report, repeatable: pdf (needs the extra pdf).",
+            rich_help_panel=_OUTPUT,
+        ),
+    ] = None,
+    language: Annotated[
+        str, typer.Option(metavar="en|es", help="Language of the reports.", rich_help_panel=_OUTPUT)
+    ] = "en",
+    report_fields: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--report-field",
+            metavar="NAME=VALUE",
+            help="Of the title page, repeatable: --report-field client='Solar Ltd'. Names: client, object,"
+            " manufacturer, type, serial, firmware, commit, number, revision, author, approval, logo, remark.",
+            rich_help_panel=_OUTPUT,
+        ),
+    ] = None,
     allow_unjudged: Annotated[
         bool,
         typer.Option(
@@ -222,6 +244,9 @@ def check(
         command=context.obj or ("pvlvrt-check",),
         folder=output,
         csv=csv,
+        formats=tuple(formats or ()),
+        language=language,
+        report_fields=tuple(report_fields or ()),
         allow_unjudged=allow_unjudged,
         exit_zero=exit_zero,
         quiet=quiet,
@@ -229,7 +254,14 @@ def check(
     )
 
 
-_OPTIONS = {"profiles": "--profile", "tests": "--test", "settings": "--set", "list_only": "--list"}
+_OPTIONS = {
+    "formats": "--format",
+    "report_fields": "--report-field",
+    "profiles": "--profile",
+    "tests": "--test",
+    "settings": "--set",
+    "list_only": "--list",
+}
 """Options whose name is not that of the field that they set."""
 
 

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from pvlvrt_compliance.api import output_in
 from pvlvrt_compliance.cli.progress import progress_bar
 from pvlvrt_compliance.cli.showing import log, show
 from pvlvrt_compliance.cli.telling import tell
 from pvlvrt_compliance.controllers.process.command import STOPS, status_of, words_of
 from pvlvrt_compliance.errors import OutputError
+from pvlvrt_compliance.output import fields_of, output_in, report_details
 from pvlvrt_compliance.report import console
 from pvlvrt_compliance.results import Results, exit_status
 from pvlvrt_compliance.study.job import Job, Spell
@@ -22,6 +22,9 @@ def run(
     command: Sequence[str],
     folder: str,
     csv: bool,
+    formats: Sequence[str],
+    language: str,
+    report_fields: Sequence[str],
     allow_unjudged: bool,
     exit_zero: bool,
     quiet: bool,
@@ -32,7 +35,14 @@ def run(
         results = run_job(
             job,
             command=command,
-            output=output_in(folder, len(job.tests), csv=csv, spell=spell),
+            output=output_in(
+                folder,
+                len(job.tests),
+                csv=csv,
+                spell=spell,
+                formats=formats,
+                details=report_details(language, fields_of(report_fields, spell=spell), spell=spell),
+            ),
             allow_unjudged=allow_unjudged,
             watch=progress_bar(len(job.tests), quiet),
             tell=tell,

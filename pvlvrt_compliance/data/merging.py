@@ -14,31 +14,56 @@ from pvlvrt_compliance.errors import ProfileError, did_you_mean
 PROFILE = Kind("a profile", "profiles", ProfileError)
 
 
+OWN = frozenset({"edition", "jurisdiction", "applies_to", "address", "read_on"})
+"""What a file says of its own text alone: an including one is of another, and says it again or leaves it open."""
+
+
+class _Joined(NamedTuple):
+    """A list of tables of which an including file's rows join the included ones."""
+
+    key: str
+    name: str  # key of a row that says which it is
+    drop: str  # key of the patterns that leave included rows out
+    one: str  # what a row is called
+    example: str
+
+
+_JOINED = (
+    _Joined("tests", "id", "drop_tests", "test", "VD5*"),
+    _Joined("not_covered", "what", "drop_not_covered", "entry", "flicker*"),
+)
+_LISTS = {each.key: each for each in _JOINED}
+
+
 class Row(NamedTuple):
-    """A row of the test table, with the files that say something of it and its place in each."""
+    """A row of such a list, with the files that say something of it and its place in each."""
 
     content: Any
     parts: tuple[tuple[Source, int], ...]
 
-    @property
-    def id(self) -> Any:
-        """Its id; None where it has none."""
-        return self.content.get("id") if isinstance(self.content, dict) else None
+    def named(self, name: str) -> str | None:
+        """What its key ``name`` says which row it is; None where it does not."""
+        found = self.content.get(name) if isinstance(self.content, dict) else None
+        return found if isinstance(found, str) else None
+
+
+Rows = dict[str, tuple[Row, ...]]
 
 
 class Merged(NamedTuple):
     """The files of a profile, deepest include first, and what they say together."""
 
     sources: tuple[Source, ...]
-    head: Table  # everything but the test table
-    rows: tuple[Row, ...]
+    head: Table  # everything but the lists whose rows join
+    rows: Rows  # of each list, by its key
     problems: tuple[str, ...]
 
     @property
     def table(self) -> Table:
         """The resolved profile as one table."""
-        tests = {"tests": [row.content for row in self.rows]} if self.rows else {}
-        return {key: value for key, value in self.head.items() if key not in {"include", "drop_tests"}} | tests
+        lists = {key: [row.content for row in rows] for key, rows in self.rows.items() if rows}
+        for_the_merge = {"include", *(each.drop for each in _JOINED)}
+        return {key: value for key, value in self.head.items() if key not in for_the_merge} | lists
 
     def describe(self, location: Location, text: str) -> str:
         """A problem of the resolved profile, told at the file, line and key that it comes from."""
@@ -48,8 +73,8 @@ class Merged(NamedTuple):
     def _places(self, location: Location) -> list[tuple[Source, Location]]:
         """The same location as each file has it, the file that wins last."""
         match location:
-            case ("tests", int(index), *rest) if index < len(self.rows):
-                return [(source, ("tests", own, *rest)) for source, own in self.rows[index].parts]
+            case (str(key), int(index), *rest) if index < len(self.rows.get(key, ())):
+                return [(source, (key, own, *rest)) for source, own in self.rows[key][index].parts]
         return [(source, location) for source in self.sources]
 
 
@@ -71,7 +96,7 @@ def merge_file(path: Path, version: int, chain: tuple[Path, ...] = ()) -> Merged
     """
     source = Source(path, PROFILE, origin_of(path))
     here = path.resolve()
-    merged = Merged((), {}, (), ())
+    merged = Merged((), {}, {}, ())
     for index, name in enumerate(_includes_of(source)):
         included = _included(name, source, index)
         if included.resolve() in (*chain, here):
@@ -106,27 +131,43 @@ def _included(name: str, including: Source, index: int) -> Path:
 
 
 def _without_dropped(merged: Merged, source: Source, version: int) -> tuple[Merged, Merged]:
-    """What a file includes without the rows that it drops, and what the file says itself."""
+    """What a file includes without the rows that it drops and what is of the included text alone, and its own."""
     problems = list(_head_problems(source, version))
-    dropped = source.table.get("drop_tests", [])
+    kept, own = Rows(), Rows()
+    for each in _JOINED:
+        kept[each.key], wrong = _kept(merged.rows.get(each.key, ()), source, each)
+        own[each.key], missing = _own_rows(source, each)
+        problems += [*wrong, *missing]
+    base = merged._replace(rows=kept, head={key: value for key, value in merged.head.items() if key not in OWN})
+    head = {key: value for key, value in source.table.items() if key not in _LISTS}
+    return base, Merged((source,), head, own, tuple(problems))
+
+
+def _kept(rows: tuple[Row, ...], source: Source, each: _Joined) -> tuple[tuple[Row, ...], list[str]]:
+    """The rows that a file does not drop, and what is wrong with its patterns."""
+    dropped = source.table.get(each.drop, [])
     if not isinstance(dropped, list) or not all(isinstance(pattern, str) for pattern in dropped):
-        problems.append(source.problem(("drop_tests",), 'must be a list of patterns: ["VD5*"]'))
-        dropped = []
-    for index, pattern in enumerate(dropped):
-        if not any(_fits(row, pattern) for row in merged.rows):
-            problems.append(source.problem(("drop_tests", index), f"{pattern!r} drops no test that is included"))
-    kept = tuple(row for row in merged.rows if not any(_fits(row, pattern) for pattern in dropped))
-    tests = source.table.get("tests", [])
-    if not isinstance(tests, list):
-        problems.append(source.problem(("tests",), f"must be a list of tables, [[tests]], not {tests!r:.60}"))
-        tests = []
-    rows = tuple(Row(content, ((source, index),)) for index, content in enumerate(tests))
-    head = {key: value for key, value in source.table.items() if key != "tests"}
-    return merged._replace(rows=kept), Merged((source,), head, rows, tuple(problems))
+        return rows, [source.problem((each.drop,), f'must be a list of patterns: ["{each.example}"]')]
+    problems = [
+        source.problem((each.drop, index), f"{pattern!r} drops no {each.one} that is included")
+        for index, pattern in enumerate(dropped)
+        if not any(_fits(row, pattern, each) for row in rows)
+    ]
+    return tuple(row for row in rows if not any(_fits(row, pattern, each) for pattern in dropped)), problems
 
 
-def _fits(row: Row, pattern: str) -> bool:
-    return isinstance(row.id, str) and fnmatchcase(row.id, pattern)
+def _own_rows(source: Source, each: _Joined) -> tuple[tuple[Row, ...], list[str]]:
+    """The rows of a file itself, and what is wrong with the list."""
+    rows = source.table.get(each.key, [])
+    if not isinstance(rows, list):
+        text = f"must be a list of tables, [[{each.key}]], not {rows!r:.60}"
+        return (), [source.problem((each.key,), text)]
+    return tuple(Row(content, ((source, index),)) for index, content in enumerate(rows)), []
+
+
+def _fits(row: Row, pattern: str, each: _Joined) -> bool:
+    name = row.named(each.name)
+    return name is not None and fnmatchcase(name, pattern)
 
 
 def _head_problems(source: Source, version: int) -> Iterator[str]:
@@ -143,17 +184,20 @@ def _joined(base: Merged, over: Merged) -> Merged:
     return Merged(
         base.sources + over.sources,
         _merge(base.head, over.head),
-        _joined_rows(base.rows, over.rows),
+        {
+            each.key: _joined_rows(base.rows.get(each.key, ()), over.rows.get(each.key, ()), each.name)
+            for each in _JOINED
+        },
         base.problems + over.problems,
     )
 
 
-def _joined_rows(base: tuple[Row, ...], over: tuple[Row, ...]) -> tuple[Row, ...]:
-    """Rows of the base, each overridden by the row of its id; all others follow. An id overrides once."""
+def _joined_rows(base: tuple[Row, ...], over: tuple[Row, ...], name: str) -> tuple[Row, ...]:
+    """Rows of the base, each overridden by the row of its name; all others follow. A name overrides once."""
     rows = list(base)
-    places = {row.id: index for index, row in enumerate(base) if isinstance(row.id, str)}
+    places = {known: index for index, row in enumerate(base) if (known := row.named(name)) is not None}
     for row in over:
-        index = places.pop(row.id, None) if isinstance(row.id, str) else None
+        index = places.pop(row.named(name) or "", None)
         if index is None:
             rows.append(row)
         else:
@@ -167,10 +211,10 @@ def _merge(base: Table, over: Table) -> Table:
 
 
 def _within(source: Source, location: Location) -> tuple[Any, Location]:
-    """What a location is of: a row of the test table, or the file."""
+    """What a location is of: a row of a list whose rows join, or the file."""
     match location:
-        case ("tests", int(index), *rest):
-            return source.table["tests"][index], tuple(rest)
+        case (str(key), int(index), *rest) if key in _LISTS:
+            return source.table[key][index], tuple(rest)
     return source.table, location
 
 

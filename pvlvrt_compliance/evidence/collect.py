@@ -42,6 +42,7 @@ def collect(
         thresholds=profile.thresholds,
         expect=test.expect,
         by_s=test.by_s,
+        row=test.demand,
         release=release,
     )
 

@@ -15,7 +15,7 @@ from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.measure.quantities import WindowMeasurements
 from pvlvrt_compliance.measure.summary import measure_span
 from pvlvrt_compliance.measure.windows import Span, settled_window
-from pvlvrt_compliance.profile.procedure import Detection, Expect
+from pvlvrt_compliance.profile.procedure import Detection, Expect, RowDemand
 from pvlvrt_compliance.profile.requirements import Requirements
 from pvlvrt_compliance.waveforms.container import Samples
 from pvlvrt_compliance.waveforms.joining import window_on_one_grid
@@ -27,6 +27,11 @@ Until = Literal["trip", "release"]
 
 ANY_LIGHT: tuple[Moved, ...] = ("irradiance",)
 """What may move in a window whose quantity does not depend on it: reactive power and current."""
+
+
+def after_trip(at_s: float) -> str:
+    """Why nothing is judged once the inverter has let go (s); reports read the instant from it."""
+    return f"not judged after the trip at {at_s:.3f} s"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -55,6 +60,8 @@ class Evidence(Record):
         All that the profile demands, for checks that depend on each other's demands.
     expect, by_s : optional
         What the row of the test table demands (`TestRow`); none of a sag of the user's own.
+    row : RowDemand, optional
+        Clause and mark of that row (`TestCase.demand`).
     release : function, optional
         Says of evidence when the limits of the voltage let the inverter go (s), None when they never do.
     """
@@ -66,6 +73,7 @@ class Evidence(Record):
     requirements: Requirements | None = None
     expect: Expect | None = None
     by_s: float | None = None
+    row: RowDemand | None = None
     release: "Callable[[Evidence], float | None] | None" = None
 
     @cached_property
@@ -92,7 +100,7 @@ class Evidence(Record):
         end_s = self.record_end_s
         reason = "nothing of the record is left to judge"
         if (tripped_s := self.known_opening_s) is not None and tripped_s < end_s:
-            end_s, reason = tripped_s, f"not judged after the trip at {tripped_s:.3f} s"
+            end_s, reason = tripped_s, after_trip(tripped_s)
         released_s = self.released_at_s if until == "release" else None
         if released_s is not None and released_s < end_s:
             end_s, reason = released_s, f"not judged from {released_s:.3f} s on, when the inverter may let go"

@@ -1,9 +1,9 @@
 """Series that several checks need, each made from the record once."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,12 +21,13 @@ from pvlvrt_compliance.measure.power import (
 from pvlvrt_compliance.measure.sequences import sequence_phasors
 from pvlvrt_compliance.measure.tracking import steering_frequency, tracked_frequency
 from pvlvrt_compliance.profile.thresholds import STANDARD_THRESHOLDS, Thresholds
-from pvlvrt_compliance.space_vectors import Sequences, phases
+from pvlvrt_compliance.space_vectors import SQRT2_3, Sequences, clarke, phases
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
 from pvlvrt_compliance.waveforms.joining import one_cycle_series
 
 Mask = NDArray[np.bool_]
+Made = TypeVar("Made")
 
 _SAME_INSTANT_S = 1e-9
 _TRACKING_CYCLES = 4  # that a tracked frequency rests on, and settles in
@@ -199,6 +200,27 @@ class Series:
     def dc_voltage_v(self) -> Samples:
         """DC voltage (V), shape (n,)."""
         return self.joined(lambda segment: segment["v_dc_v"])
+
+    @cached_property
+    def array_power_kw(self) -> Samples:
+        """Power of the PV array (kW), shape (n,)."""
+        return self.joined(lambda segment: segment["v_dc_v"] * segment["i_pv_a"]) / 1e3
+
+    @cached_property
+    def current_vector_pu(self) -> ComplexSamples:
+        """Space vector of the current, as long as the amplitude of a balanced one, shape (n,)."""
+        return np.asarray(SQRT2_3 * clarke(*self.current_pu), dtype=np.complex128)
+
+    def once(self, key: Hashable, make: Callable[[], Made]) -> Made:
+        """What a function makes of the record, made when it is first asked for by its key."""
+        if key not in self._made:
+            self._made[key] = make()
+        found: Made = self._made[key]
+        return found
+
+    @cached_property
+    def _made(self) -> dict[Hashable, Any]:
+        return {}
 
     def between(self, start_s: float, end_s: float) -> Mask:
         """Mask of the samples from one instant to another, both included, shape (n,)."""

@@ -44,6 +44,43 @@ class MeasuredStretch(_Frozen):
     window: WindowMeasurements | None = Field(default=None, description="none: too short for a settled cycle")
 
 
+class Cursor(_Frozen):
+    """What one quantity does between two steps of what the grid does; None where it cannot be had.
+
+    Extremes and mean are of the settled series, times (s) count from the step that the stretch begins with, of the
+    change from ``initial`` to ``final``.
+    """
+
+    quantity: str = Field(description="voltage_positive_pu and its like, as limits of figures name them")
+    minimum: FiniteFloat
+    maximum: FiniteFloat
+    mean: FiniteFloat
+    initial: FiniteFloat | None = Field(default=None, description="mean of the last cycle before the step")
+    final: FiniteFloat | None = Field(default=None, description="mean of the last part of the stretch")
+    reaction_s: FiniteFloat | None = Field(default=None, description="to 10 % of the change")
+    rise_s: FiniteFloat | None = Field(default=None, description="10 % to 90 % of the change")
+    response_s: FiniteFloat | None = Field(default=None, description="to 90 % of the change")
+    settling_s: FiniteFloat | None = Field(default=None, description="to the last entry into the tolerance band")
+    overshoot_percent: FiniteFloat | None = Field(default=None, description="beyond the final value, of the change")
+
+    @model_serializer(mode="wrap")
+    def _leave_out_absent(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return {name: value for name, value in handler(self).items() if value is not None}
+
+
+class CursorStretch(_Frozen):
+    """The cursors of one stretch: of the window before the disturbance, or of what follows a step."""
+
+    begin_s: FiniteFloat
+    end_s: FiniteFloat
+    is_before: bool = Field(default=False, description="the window before the disturbance, in which nothing is timed")
+    in_words: str = ""
+    band_percent: FiniteFloat | None = Field(
+        default=None, description="of the change, on both sides of the final value: what the settling time is of"
+    )
+    cursors: tuple[Cursor, ...] = ()
+
+
 class MeasuredWindows(_Frozen):
     """Measurements of one record by window; a window that the record does not hold is left out."""
 

@@ -124,6 +124,17 @@ def settled_window(
     return usual or short
 
 
+def last_window(begin_s: float, end_s: float, frequency_hz: float, rules: WindowRules = STANDARD_RULES) -> Span | None:
+    """The part of a settled window that tells what a stretch comes to, as long as `after`; parameters as there.
+
+    Whole cycles with the end of `settled_window`; where that is shorter than `after`, itself.
+    """
+    settled = settled_window(begin_s, end_s, frequency_hz, rules)
+    if settled is None:
+        return None
+    return _shorten(Span(max(settled.start_s, settled.end_s - rules.after_length_s), settled.end_s), frequency_hz)
+
+
 def _shorten(span: Span, frequency_hz: float) -> Span | None:
     cycles = math.floor((span.end_s - span.start_s) * frequency_hz + _CYCLE_SLACK)
     return Span(span.end_s - cycles / frequency_hz, span.end_s) if cycles >= 1 else None

@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidatorFunctionWrapHandler, WrapValidator, model_validator
 
-from pvlvrt_compliance.data.marks import Fraction, Frozen, Marked, NotNegative, Number, Numbers, Positive
+from pvlvrt_compliance.data.marks import CONFIDENCES, Fraction, Frozen, Marked, NotNegative, Number, Numbers, Positive
 from pvlvrt_compliance.profile.ids import ID_PATTERN
 from pvlvrt_compliance.profile.sequences import CornerTests, StepTable
 from pvlvrt_compliance.scenario.events import Event
@@ -144,6 +144,12 @@ class TestRow(Marked):
         return self
 
 
+class RowDemand(Marked):
+    """Where the demand of a row of the test table comes from, as a verdict on it says."""
+
+    clause: str
+
+
 class TestCase(Frozen):
     """One run to make: an id, what happens, and where the procedure comes from."""
 
@@ -160,6 +166,14 @@ class TestCase(Frozen):
     long: bool = False
     expect: Expect | None = Field(default=None, description="of a row; none: a sag of the user's own")
     by_s: float | None = None
+
+    @property
+    def demand(self) -> RowDemand | None:
+        """Clause and mark of what its row demands, None of a sag of the user's own."""
+        mark = next((mark for mark in CONFIDENCES if mark == self.confidence), None)
+        if self.expect is None or mark is None:
+            return None
+        return RowDemand(clause=self.clause, confidence=mark, source=f"the row of the test table of {self.id}")
 
     def judges(self, kind: str) -> bool:
         """Whether the test is judged by a kind of requirement."""

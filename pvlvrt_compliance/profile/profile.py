@@ -7,11 +7,12 @@ from typing import Any, Literal
 
 from pydantic import Field, create_model
 
-from pvlvrt_compliance.data.marks import VERIFIED, Frozen, canonical_json, marks_in, weakest
+from pvlvrt_compliance.data.marks import VERIFIED, canonical_json, marks_in, weakest
 from pvlvrt_compliance.errors import UsageError, did_you_mean
 from pvlvrt_compliance.profile.catalogue import expand, make_scenario, sag_duration_s
 from pvlvrt_compliance.profile.corners import corner_rows
 from pvlvrt_compliance.profile.curves import Envelope
+from pvlvrt_compliance.profile.head import Head
 from pvlvrt_compliance.profile.ids import ID_PATTERN
 from pvlvrt_compliance.profile.procedure import Conditions, Detection, Procedure, TestCase, TestRow, Windows
 from pvlvrt_compliance.profile.requirements import Kinds, Requirements, RideThrough, requirements_of
@@ -21,7 +22,7 @@ from pvlvrt_compliance.scenario.sag import Sag
 SCHEMA_VERSION = 1
 
 
-class Profile(Frozen):
+class Profile(Head):
     """A profile with its includes resolved."""
 
     schema_version: Literal[1]

@@ -22,6 +22,7 @@ def file_schema(kinds: Kinds = BUILT_IN) -> dict[str, Any]:
     schema["properties"] |= {
         "include": texts | {"description": "names or paths of profiles that this file builds on"},
         "drop_tests": texts | {"description": "shell patterns: ids of included tests to leave out"},
+        "drop_not_covered": texts | {"description": "shell patterns: included entries of not_covered to leave out"},
     }
     schema["title"] = "Profile of a grid code"
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

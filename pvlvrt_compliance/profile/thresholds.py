@@ -67,6 +67,12 @@ class Thresholds(Frozen):
     normal_jump_deg: HertzOrDegrees = _chosen(5.0, "a quarter of the smallest jump that a code names")
     normal_jump_s: Seconds = _chosen(0.2, "ten cycles at 50 Hz: what a jump does to a control is over by then")
     voltage_tolerance_pu: Floor = _chosen(0.001, "rounding of a measured voltage: on a limit by less is on it")
+    response_band: Annotated[Positive, AfterValidator(_at_most(0.5))] = _chosen(
+        0.10, "of the change, on both sides of the final value: the band begins where 90 % of the change is reached"
+    )
+    response_least_pu: Floor = _chosen(
+        0.05, "least change that is timed: a tenth of it is 0.005 pu, what measurement leaves open of current and power"
+    )
     no_power_pu: Floor = _chosen(
         0.02, "of rated power: with less than this before, no share of it is judged; what cooling and control take"
     )

@@ -138,7 +138,7 @@ def summary_line(results: Results) -> str:
 
 
 def _test_cells(test: TestResult, with_clause: bool) -> list[Text]:
-    demanded = spell.label(test.expect or "") if test.expect != "ride_through" else ""
+    demanded = spell.demand_in_words(test.expect) if test.expect != "ride_through" else ""
     clause = [Text(test.clause)] if with_clause else []
     cells = [Text(test.id, style="bold"), Text(demanded), Text(), Text(), _verdict(test.status)]
     return [*cells, *clause, Text(test.confidence)]
@@ -148,7 +148,7 @@ def _add_checks(table: Table, test: TestResult, indent: str, with_clause: bool) 
     for check in verdicts(test):
         numbers = spell.row(check)
         # The unit once a line: at 80 columns there is no room for it three times.
-        margin = spell.bare(numbers.margin, check)
+        margin = spell.bare(numbers.margin)
         cells = (indent + check.check, numbers.measured, spell.limit_in_signs(check), margin)
         # Text, because a str would be read as markup and "[0.7, 0.3]" would vanish.
         clause = (Text(check.clause),) if with_clause else ()

@@ -1,13 +1,15 @@
-"""How numbers and verdicts are spelled for people, the same in the terminal and in HTML."""
+"""How numbers and verdicts are spelled for people, the same in the terminal, in HTML and on paper.
 
-import math
+Every function takes the texts of a language; without them it speaks English, as terminal and JUnit do.
+"""
+
+from functools import cache
 from typing import NamedTuple
 
+from pvlvrt_compliance.report.language import Texts
 from pvlvrt_compliance.results import JUDGED, Status, Verdict
-
-_DECIMALS_BY_UNIT = {"kW": 1, "kvar": 1, "pu": 3, "V": 1, "A": 1, "%": 3, "s": 3, "ms": 1, "Hz": 2, "kHz": 2}
-_MAX_DECIMALS = 9
-_SIGNIFICANT_DIGITS = 4
+from pvlvrt_compliance.results.digits import decimals as decimals_of
+from pvlvrt_compliance.results.digits import digits_of
 
 STATUS_WORD = {
     Status.ERROR: "error",
@@ -38,10 +40,6 @@ CONFIDENCE_MEANING = {
 }
 
 
-THROUGHOUT = "throughout"
-"""In place of a least time that nothing bounds."""
-
-_BOUND_WORDS = {None: "", "at_least": "at least ", "at_most": "at most ", "band": "within ±"}
 _BOUND_SIGNS = {None: ("", "+-"), "at_least": (">=", "-"), "at_most": ("<=", "+"), "band": ("+-", "+")}
 
 
@@ -55,7 +53,13 @@ class Row(NamedTuple):
     uncertainty: str = ""
 
 
-def number(value: float | None, unit: str = "", decimals: int | None = None, sign: bool = False) -> str:
+def number(
+    value: float | None,
+    unit: str = "",
+    decimals: int | None = None,
+    sign: bool = False,
+    texts: Texts | None = None,
+) -> str:
     """Write a value with its unit, ``50.0 kvar``; an empty string for None.
 
     Parameters
@@ -68,67 +72,79 @@ def number(value: float | None, unit: str = "", decimals: int | None = None, sig
         Instead of the unit's own.
     sign : bool
         Write ``+`` too.
+    texts : Texts, optional
+        For units that are words (``runs``).
     """
     if value is None:
         return ""
-    places = _decimals(value, unit) if decimals is None else decimals
+    places = decimals_of(value, unit) if decimals is None else decimals
     text = f"{value:{'+' if sign else ''}.{places}f}"
     if float(text) == 0:
         text = text.replace("-", "")
-    return f"{text} {unit}".rstrip()
+    return f"{text} {_unit(value, unit, texts)}".rstrip()
 
 
-def row(check: Verdict) -> Row:
-    """The numbers of a verdict, with decimals enough that a margin other than zero never reads as zero."""
-    values = [v for v in (check.measured, check.limit, check.margin, check.tolerance or None) if v is not None]
-    places = max((_decimals(v, check.unit) for v in values), default=0)
-    while check.margin and places < _MAX_DECIMALS and float(f"{check.margin:.{places}f}") == 0:
-        places += 1
-    finest = places if check.uncertainty is None else max(places, _decimals(check.uncertainty, check.unit))
+def row(check: Verdict, texts: Texts | None = None) -> Row:
+    """The numbers of a verdict, with decimals enough that its margin recomputes (`digits.digits_of`)."""
+    places, margin = digits_of(check)
+    finest = places if check.uncertainty is None else max(places, decimals_of(check.uncertainty, check.unit))
     return Row(
-        measured=number(check.measured, check.unit, places),
-        limit=number(check.limit, check.unit, places),
-        margin=number(check.margin, check.unit, places, sign=True),
-        tolerance=number(check.tolerance or None, check.unit, places),
-        uncertainty=number(check.uncertainty, check.unit, finest),
+        measured=number(check.measured, check.unit, places, texts=texts),
+        limit=number(check.limit, check.unit, places, texts=texts),
+        margin=number(margin, check.unit, places, sign=True, texts=texts),
+        tolerance=number(check.tolerance or None, check.unit, places, texts=texts),
+        uncertainty=number(check.uncertainty, check.unit, finest, texts=texts),
     )
 
 
-def limit_in_words(check: Verdict) -> str:
+def limit_in_words(check: Verdict, texts: Texts | None = None) -> str:
     """The limit with its kind and its tolerance: ``at least 160.7 kvar, tolerance 8.8``."""
-    numbers = row(check)
+    numbers = row(check, texts)
     if not numbers.limit:
-        return _without_limit(check)
-    tolerance = f", tolerance {bare(numbers.tolerance, check)}" if numbers.tolerance else ""
-    return f"{_BOUND_WORDS[check.bound]}{numbers.limit}{tolerance}"
+        return _without_limit(check, texts)
+    kind = check.bound or "plain"
+    if not numbers.tolerance:
+        return _texts(texts)(f"limit.{kind}", limit=numbers.limit)
+    tolerance = bare(numbers.tolerance)
+    return _texts(texts)(f"limit.{kind}_with_tolerance", limit=numbers.limit, tolerance=tolerance)
 
 
 def limit_in_signs(check: Verdict) -> str:
     """The same where there is no room: ``>=160.7-8.8`` is what the measured value must reach. No unit, plain ASCII."""
     numbers = row(check)
     if not numbers.limit:
-        return _without_limit(check)
+        return _without_limit(check, None)
     sign, widened = _BOUND_SIGNS[check.bound]
-    tolerance = f"{widened}{bare(numbers.tolerance, check)}" if numbers.tolerance else ""
+    tolerance = f"{widened}{bare(numbers.tolerance)}" if numbers.tolerance else ""
     if check.bound == "band" and tolerance and not check.limit:
-        return f"{sign}{bare(numbers.tolerance, check)}"
-    return f"{sign}{bare(numbers.limit, check)}{tolerance}"
+        return f"{sign}{bare(numbers.tolerance)}"
+    return f"{sign}{bare(numbers.limit)}{tolerance}"
 
 
-def bare(text: str, check: Verdict) -> str:
+def bare(text: str) -> str:
     """A number of a verdict without its unit."""
-    return text.removesuffix(f" {check.unit}")
+    return text.partition(" ")[0]
 
 
-def verdict_in_words(check: Verdict) -> str:
+def verdict_in_words(check: Verdict, texts: Texts | None = None) -> str:
     """The status, and whether it is marginal."""
-    return f"{STATUS_WORD[check.status]}{' (marginal)' if check.is_marginal else ''}"
+    if texts is None:
+        return f"{STATUS_WORD[check.status]}{' (marginal)' if check.is_marginal else ''}"
+    word = texts.named("status", check.status)
+    return texts("limit.marginal_verdict", verdict=word) if check.is_marginal else word
 
 
-def marginal_in_words(check: Verdict) -> str:
+def state_in_words(check: Verdict, texts: Texts | None = None) -> str:
+    """The status; of what is not judged for a trip that came first, that and when."""
+    if check.status is Status.NOT_APPLICABLE and (at_s := check.after_trip_s) is not None:
+        return _texts(texts)("limit.after_trip", at_s=number(at_s, "s"))
+    return _texts(texts).named("status", check.status)
+
+
+def marginal_in_words(check: Verdict, texts: Texts | None = None) -> str:
     """Why a verdict is marginal: ``margin -0.003 pu, uncertainty 0.005 pu``."""
-    numbers = row(check)
-    return f"margin {numbers.margin}, uncertainty {numbers.uncertainty}"
+    numbers = row(check, texts)
+    return _texts(texts)("limit.marginal", margin=numbers.margin, uncertainty=numbers.uncertainty)
 
 
 def stretch_unless_told(check: Verdict) -> str:
@@ -136,19 +152,26 @@ def stretch_unless_told(check: Verdict) -> str:
     return "" if check.stretch in check.message else check.stretch
 
 
-def _without_limit(check: Verdict) -> str:
+def demand_in_words(expect: str | None, texts: Texts | None = None) -> str:
+    """What a row of a test table demands, ``may trip``; nothing of a sag of the user's own."""
+    return _texts(texts).named("section.expect", expect) if expect else ""
+
+
+def _without_limit(check: Verdict, texts: Texts | None) -> str:
     """A least time without a limit is demanded for as long as the record lasts."""
-    return THROUGHOUT if check.status in JUDGED and check.bound == "at_least" else ""
+    demanded = check.status in JUDGED and check.bound == "at_least"
+    return _texts(texts)("limit.throughout") if demanded else ""
 
 
-def label(name: str) -> str:
-    """Make a name of the data model readable: ``reactive_support`` becomes ``reactive support``."""
-    return name.replace("_", " ")
+def _unit(value: float, unit: str, texts: Texts | None) -> str:
+    key = f"unit_word.{unit}"
+    return _texts(texts)(key, count=value) if unit and key in _texts(texts) else unit
 
 
-def _decimals(value: float, unit: str) -> int:
-    if unit in _DECIMALS_BY_UNIT:
-        return _DECIMALS_BY_UNIT[unit]
-    if value == int(value):
-        return 0
-    return min(max(_SIGNIFICANT_DIGITS - 1 - math.floor(math.log10(abs(value))), 0), _MAX_DECIMALS)
+def _texts(texts: Texts | None) -> Texts:
+    return _english() if texts is None else texts
+
+
+@cache
+def _english() -> Texts:
+    return Texts()

@@ -33,7 +33,7 @@ def render(profile: Profile) -> str:
     ----------
     profile : Profile
     """
-    lines = [f"{profile.id}: {profile.title}", "", *_legend(profile), "", "REQUIREMENTS"]
+    lines = [f"{profile.id}: {profile.title}", *_indented(_head(profile)), "", *_legend(profile), "", "REQUIREMENTS"]
     for kind, requirement in profile.requirements.by_kind():
         lines += ["", f"{kind} ({requirement.clause})", *_indented(_requirement(requirement))]
     for heading, part in (
@@ -45,7 +45,30 @@ def render(profile: Profile) -> str:
     ):
         if part is not None:
             lines += ["", heading, *_indented(_content(part))]
-    return "\n".join([*lines, "", *_tests(profile)]) + "\n"
+    return "\n".join([*lines, "", *_not_covered(profile), *_tests(profile)]) + "\n"
+
+
+def _head(profile: Profile) -> Iterator[str]:
+    """What the profile says of the text that it is made from."""
+    plants = "; ".join(text for _, text in profile.applies_to if text)
+    for name, text in (
+        ("edition", profile.edition),
+        ("in force in", profile.jurisdiction),
+        ("applies to", plants),
+        ("text", profile.address),
+        ("read on", "" if profile.read_on is None else profile.read_on.isoformat()),
+    ):
+        if text:
+            yield f"{name}: {text}"
+
+
+def _not_covered(profile: Profile) -> list[str]:
+    if not profile.not_covered:
+        return []
+    entries = (
+        f"{entry.what}{f' ({entry.clause})' if entry.clause else ''}: {entry.why}" for entry in profile.not_covered
+    )
+    return ["NOT COVERED: what the text has and this profile does not judge", *_indented(entries), ""]
 
 
 def _legend(profile: Profile) -> list[str]:

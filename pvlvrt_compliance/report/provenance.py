@@ -3,6 +3,8 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
+from pvlvrt_compliance.report.language import Texts
+
 
 class Group(NamedTuple):
     """A table of the provenance section."""
@@ -11,9 +13,13 @@ class Group(NamedTuple):
     entries: tuple[tuple[str, str], ...]
 
 
-def provenance_groups(provenance: Mapping[str, Any]) -> list[Group]:
-    """Plain values first, then one group for each mapping, nested names joined by dots."""
-    plain = tuple((name, _text(value)) for name, value in provenance.items() if not isinstance(value, Mapping))
+def provenance_groups(provenance: Mapping[str, Any], texts: Texts) -> list[Group]:
+    """Plain values first, by their names in words, then one group for each mapping, nested names joined by dots."""
+    plain = tuple(
+        (texts.named("provenance", name), _text(value))
+        for name, value in provenance.items()
+        if not isinstance(value, Mapping)
+    )
     nested = [Group(name, tuple(_flatten(value))) for name, value in provenance.items() if isinstance(value, Mapping)]
     return [group for group in (Group("run", plain), *nested) if group.entries]
 

@@ -43,6 +43,10 @@ class Band(BaseModel):
     lower: Line | None = None
     upper: Line | None = None
     widened: bool = Field(default=False, description="the same limit as another of its name, with the tolerance")
+    about_its_line: bool = Field(
+        default=False, description="limits a swing about a straight line, which lies midway between lower and upper"
+    )
+    half_cycle: bool = Field(default=False, description="of means over half a cycle, not over one")
     region: str | None = Field(
         default=None, description="mode of operation while the quantity is in it; none: it must not be left"
     )

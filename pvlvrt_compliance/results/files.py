@@ -3,4 +3,4 @@
 WAVEFORMS = "waveforms"
 """Folder of the records, by the names that results refer to them by."""
 
-RESULTS, JUNIT, REPORT = "results.json", "junit.xml", "report.html"
+RESULTS, JUNIT, REPORT, REPORT_PDF = "results.json", "junit.xml", "report.html", "report.pdf"

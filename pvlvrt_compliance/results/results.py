@@ -8,14 +8,17 @@ from typing import Any, NamedTuple
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from pvlvrt_compliance.disturbance.model import Disturbance
-from pvlvrt_compliance.measure.quantities import MeasuredWindows
+from pvlvrt_compliance.measure.quantities import CursorStretch, MeasuredWindows
 from pvlvrt_compliance.results.band import Band
+from pvlvrt_compliance.results.details import ReportDetails
+from pvlvrt_compliance.results.drawn import Characteristic, Instant, Spectrum
+from pvlvrt_compliance.results.profile import ProfileSummary
 from pvlvrt_compliance.results.verdict import JUDGED, Status, Verdict, worst
 
 SCHEMA_VERSION = 1
 
 # When and how a run was asked for, not what it is or found.
-_NOT_FOUND: dict[str, Any] = {"allow_unjudged": True, "provenance": {"created", "command"}}
+_NOT_FOUND: dict[str, Any] = {"allow_unjudged": True, "report": True, "provenance": {"created", "command"}}
 
 
 class _Frozen(BaseModel):
@@ -52,8 +55,14 @@ class TestResult(_Frozen):
     status: Status
     checks: tuple[Verdict, ...] = ()
     bands: tuple[Band, ...] = Field(default=(), description="limits as a figure draws them")
+    spectra: tuple[Spectrum, ...] = Field(default=(), description="what was judged by order, with its limits")
+    characteristics: tuple[Characteristic, ...] = Field(default=(), description="limits over another quantity")
+    instants: tuple[Instant, ...] = Field(default=(), description="when what a time is demanded of has come")
     waveforms: str | None = Field(default=None, description="path of the waveforms, relative to results.json")
     measurements: MeasuredWindows = MeasuredWindows()
+    cursors: tuple[CursorStretch, ...] = Field(
+        default=(), description="extremes, mean and response times of each stretch between steps, up to a trip"
+    )
     trip_cause: str | None = Field(default=None, description="what opened the breaker, in words")
     clause: str = Field(default="", description="where the test procedure comes from")
     confidence: str = Field(default="", description="mark of the test procedure's numbers")
@@ -77,16 +86,6 @@ class Finding(NamedTuple):
     verdict: Verdict
 
 
-class ProfileSummary(_Frozen):
-    """The profile that was judged against, as a report shows it."""
-
-    id: str
-    title: str
-    digest: str
-    notes: tuple[str, ...] = Field(default=(), description="what is not verified, a sentence each")
-    left_out: tuple[str, ...] = Field(default=(), description="long tests that were not asked for, by id")
-
-
 class Results(_Frozen):
     """A whole run."""
 
@@ -99,6 +98,7 @@ class Results(_Frozen):
     allow_unjudged: bool = Field(
         default=False, description="whether --allow-unjudged was given, for the exit status and junit.xml"
     )
+    report: ReportDetails = Field(default=ReportDetails(), description="what was given for the report")
     profiles: tuple[ProfileSummary, ...] = ()
     provenance: dict[str, Any] = Field(default_factory=dict)
     tests: tuple[TestResult, ...] = ()
@@ -117,9 +117,13 @@ class Results(_Frozen):
 
         Of those that passed or failed; None where none of them has a margin.
         """
-        found = [each for each in self.verdicts() if each.verdict.status in JUDGED]
-        margins = {k: m for k, each in enumerate(found) if (m := each.verdict.relative_margin) is not None}
-        return found[min(margins, key=margins.__getitem__)] if margins else None
+        return next(iter(self.worst_margins(1)), None)
+
+    def worst_margins(self, count: int) -> tuple[Finding, ...]:
+        """As many verdicts as are asked for, the one that is nearest to failing first, as of `worst_margin`."""
+        judged = [each for each in self.verdicts() if each.verdict.status in JUDGED]
+        margins = {k: m for k, each in enumerate(judged) if (m := each.verdict.relative_margin) is not None}
+        return tuple(judged[k] for k in sorted(margins, key=margins.__getitem__)[:count])
 
     @property
     def nothing_judged(self) -> bool:
@@ -140,6 +144,7 @@ def conclude(
     provenance: dict[str, Any] | None = None,
     *,
     allow_unjudged: bool = False,
+    report: ReportDetails | None = None,
 ) -> Results:
     """Gather tests into the result of a run, with its id.
 
@@ -150,6 +155,7 @@ def conclude(
     results = Results(
         status=Status.NOT_EVALUATED if status is Status.NOT_APPLICABLE else status,
         allow_unjudged=allow_unjudged,
+        report=report or ReportDetails(),
         tests=tests,
         profiles=tuple(profiles),
         provenance=provenance or {},

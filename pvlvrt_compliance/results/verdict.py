@@ -1,5 +1,6 @@
 """One verdict on one requirement in one test."""
 
+import re
 from collections.abc import Iterable
 from enum import StrEnum
 from typing import Annotated, Any, Literal
@@ -31,6 +32,8 @@ JUDGED = frozenset({Status.PASS, Status.FAIL})
 
 UNSETTLED = frozenset({Status.ERROR, Status.NOT_EVALUATED, Status.FAIL})
 """Verdicts that somebody has to look into."""
+
+_AFTER_TRIP = re.compile(r"not judged after the trip at (\d+\.\d+) s\b")
 
 _RANK = {status: rank for rank, status in enumerate(Status)}
 
@@ -77,6 +80,12 @@ class Verdict(BaseModel):
         if self.margin is None or self.uncertainty is None:
             return False
         return self.status in JUDGED and abs(self.margin) < self.uncertainty
+
+    @property
+    def after_trip_s(self) -> float | None:
+        """When the inverter tripped (s, from the start of the record), where that is why nothing was judged."""
+        found = _AFTER_TRIP.match(self.message)
+        return None if found is None else float(found[1])
 
     @property
     def relative_margin(self) -> float | None:

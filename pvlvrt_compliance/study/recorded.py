@@ -4,7 +4,8 @@ import hashlib
 from pathlib import Path
 from typing import Any
 
-from pvlvrt_compliance.checks.evaluate import evidence_of, judge_record, summarise
+from pvlvrt_compliance.checks.evaluate import evidence_of, judge_record
+from pvlvrt_compliance.checks.summary import summarise
 from pvlvrt_compliance.disturbance.found import Thresholds, disturbance_found
 from pvlvrt_compliance.disturbance.model import Disturbance
 from pvlvrt_compliance.errors import UsageError, did_you_mean

@@ -1,16 +1,16 @@
 """A whole run: from a job to its results, and to its files where a folder is named."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pvlvrt_compliance.checks.evaluate import summarise
+from pvlvrt_compliance.checks.summary import summarise
 from pvlvrt_compliance.errors import OutputError
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
-from pvlvrt_compliance.results import Results, TestResult, conclude
+from pvlvrt_compliance.results import ReportDetails, Results, TestResult, conclude
 from pvlvrt_compliance.results.files import RESULTS
 from pvlvrt_compliance.study.job import Job, Spell
 from pvlvrt_compliance.study.named import Named
@@ -44,6 +44,10 @@ class Output:
         Whether waveforms are written as CSV, too.
     spell : callable
         How whoever asks writes ``output``, as of `make_job`.
+    details : ReportDetails
+        What is given for the reports: language, fields of a title page.
+    told : collection of str
+        Files whose writing is told before it begins, since it may take a while.
     """
 
     folder: str
@@ -51,6 +55,8 @@ class Output:
     drawing: Named
     csv: bool = False
     spell: Spell = str
+    details: ReportDetails = field(default_factory=ReportDetails)
+    told: Collection[str] = ()
 
 
 def run_job(
@@ -96,7 +102,7 @@ def run_job(
         run.tell_of_folder(tell)
         with watch or nullcontext() as progress:
             run.simulate(progress)
-        results = run.deliver()
+        results = run.deliver(tell)
     except OutputError as error:
         raise OutputError(f"{error}; {run.keep_unfinished()}") from error
     except OSError as error:
@@ -162,11 +168,13 @@ class _Run:
                     self._made[tested.result.key] = tested.made
                 self._finished.append(tested.result)
 
-    def deliver(self) -> Results:
+    def deliver(self, tell: Callable[[str], None]) -> Results:
         """The results; with an output folder, all reports are put in their places."""
         results = self._results()
         if self._output and self._folder:
             for name, render in self._output.formats.items():
+                if name in self._output.told:
+                    tell(f"writing {name}")
                 self._folder.write(name, render(results, self._made))
             self._folder.finish()
         return results
@@ -213,7 +221,8 @@ class _Run:
         ]
         order = [profile.id for profile in job.profiles]
         finished = sorted(self._finished, key=lambda test: order.index(test.profile))
-        return conclude(finished, summaries, origin, allow_unjudged=self._allow_unjudged)
+        details = self._output.details if self._output else None
+        return conclude(finished, summaries, origin, allow_unjudged=self._allow_unjudged, report=details)
 
 
 def _of(profile: Profile, items: Iterable[Assignment]) -> list[TestCase]:

@@ -13,12 +13,12 @@ from pathlib import Path
 
 from pvlvrt_compliance.errors import OutputError, UsageError, unwritable
 from pvlvrt_compliance.locks import Lock, holder_of, take_lock
-from pvlvrt_compliance.results.files import JUNIT, REPORT, RESULTS, WAVEFORMS
+from pvlvrt_compliance.results.files import JUNIT, REPORT, REPORT_PDF, RESULTS, WAVEFORMS
 from pvlvrt_compliance.study.placing import Placing, begun_in, in_order, remove, remove_empty
 
 INTERRUPTED = "interrupted"
 
-_VERDICTS = (REPORT, JUNIT, RESULTS)  # results.json comes last and goes first: where it is, everything is
+_VERDICTS = (REPORT_PDF, REPORT, JUNIT, RESULTS)  # results.json comes last and goes first: where it is, everything is
 _STAGING, _LOCK = ".unfinished-", ".unfinished.lock"
 _RECORD_ENDINGS = (".cfg", ".dat", ".csv")
 
@@ -226,6 +226,8 @@ class OutputFolder:
         records = _records_of(root)
         prefix = f"{part}/" if part else ""
         verdicts = [name for name in _VERDICTS if (root / name).is_file() and (not part or records is not None)]
+        if REPORT_PDF in verdicts and not _is_of_the_run(root / REPORT_PDF):
+            verdicts.remove(REPORT_PDF)
         found = (root / WAVEFORMS).iterdir() if records else ()
         waveforms = [f.name for f in found if f.stem in (records or ()) and f.suffix in _RECORD_ENDINGS and f.is_file()]
         return (*(f"{prefix}{name}" for name in verdicts), *(f"{prefix}{WAVEFORMS}/{name}" for name in waveforms))
@@ -240,6 +242,15 @@ class OutputFolder:
 
 def _device_of(place: Path) -> int:
     return place.stat().st_dev
+
+
+def _is_of_the_run(report: Path) -> bool:
+    """Whether a PDF, which only some runs write, is of the results beside it: it carries their id, as is."""
+    try:
+        run_id = json.loads((report.parent / RESULTS).read_bytes())["run_id"]
+        return bool(run_id) and str(run_id).encode() in report.read_bytes()
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
 
 
 def _records_of(folder: Path) -> set[str] | None:

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from pvlvrt_compliance.checks.evaluate import errored, evaluate, summarise
+from pvlvrt_compliance.checks.evaluate import errored, evaluate
+from pvlvrt_compliance.checks.summary import summarise
 from pvlvrt_compliance.profile import load_profile
 from pvlvrt_compliance.results import Status
 from pvlvrt_compliance.scenario.sag import Sag

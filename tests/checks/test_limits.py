@@ -12,7 +12,7 @@ from pvlvrt_compliance.results.band import voltage_in
 from sampled import SAMPLE, sampled
 
 UNDRAWN = {
-    "harmonics": "a spectrum of ten cycles has no level over time",
+    "harmonics": "a spectrum of ten cycles has no level over time, but one by order",
     "dc_injection": "a mean of ten cycles, too small to be seen beside the current",
     "toggling": "how often a current comes on is a number, and no level",
     "repeated_runs": "a row of tests has no record",
@@ -67,6 +67,10 @@ def test_every_check_that_judged_is_drawn(name):
         if check.status in JUDGED:
             assert (check.check in drawn) != (check.check in UNDRAWN), check.check
     assert not drawn & set(UNDRAWN)
+    judged_kinds = {check.check for check in judged.result.checks if check.status in JUDGED}
+    assert ("harmonics" in judged_kinds) == any(judged.result.spectra)
+    assert ("overfrequency_power" in judged_kinds) == any(judged.result.characteristics)
+    assert ("support_dynamics" in judged_kinds) == any(judged.result.instants)
     for band in judged.result.bands:
         assert np.isfinite(series_of(judged.evidence, band.quantity)).any()
         assert list(band.t_s) == sorted(band.t_s)

@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,13 +15,11 @@ from unittest import mock
 import lxml.html
 import pytest
 
+from consoles import surroundings
 from pvlvrt_compliance.cli.main import run
 from waiting import PATIENCE_S
 
 PROGRAM = (sys.executable, "-m", "pvlvrt_compliance.cli.main")
-
-# What a terminal or a CI service sets, and the command would rightly follow.
-_SURROUNDINGS = ("COLUMNS", "FORCE_COLOR", "NO_COLOR", "TTY_COMPATIBLE", "SOURCE_DATE_EPOCH")
 
 
 class Ended(NamedTuple):
@@ -72,11 +70,6 @@ class Reports:
 
 def _refuse(constant: str) -> None:
     raise AssertionError(f"results.json holds {constant}")
-
-
-def surroundings(more: Mapping[str, str]) -> dict[str, str]:
-    """Environment of a command that is not run from a terminal."""
-    return {name: value for name, value in os.environ.items() if name not in _SURROUNDINGS} | dict(more)
 
 
 def _command(*arguments: str | Path, **environment: str) -> Ended:

@@ -1,6 +1,6 @@
 """The command as a program that can write no file of more than so many bytes: ``python limited.py BYTES ARGUMENTS...``.
 
-The limit begins with the first record that is written: what the simulator keeps for itself is none of the run's.
+The limit begins with the first file of the run: what the simulator keeps for itself is none of it.
 """
 
 import resource
@@ -8,18 +8,21 @@ import sys
 
 from pvlvrt_compliance.cli.main import main
 from pvlvrt_compliance.study import records
+from pvlvrt_compliance.study.store import OutputFolder
 
 
-def _limit_from_the_first_record_on(size):
-    right = records.write_comtrade
+def _limit_from(holder, name, size):
+    right = getattr(holder, name)
 
-    def write_comtrade(*arguments, **keywords):
+    def limited(*arguments, **keywords):
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
         return right(*arguments, **keywords)
 
-    records.write_comtrade = write_comtrade
+    setattr(holder, name, limited)
 
 
 if __name__ == "__main__":
-    _limit_from_the_first_record_on(int(sys.argv.pop(1)))
+    limit = int(sys.argv.pop(1))
+    _limit_from(records, "write_comtrade", limit)
+    _limit_from(OutputFolder, "write", limit)
     main()

@@ -114,7 +114,7 @@ def test_schema_allows_what_a_later_version_adds(main_job, command):
 
 def test_keys_that_other_programs_rely_on(main_job, result):
     """Top level, test, check and windows have the keys of the published interface."""
-    top = {"schema_version", "run_id", "status", "allow_unjudged", "profiles", "provenance", "tests"}
+    top = {"schema_version", "run_id", "status", "allow_unjudged", "report", "profiles", "provenance", "tests"}
     assert set(main_job.reports.json) == top
     assert result.keys() >= {"id", "scenario", "status", "checks", "waveforms", "measurements"}
     assert [check["check"] for check in result["checks"]] == CHECKS

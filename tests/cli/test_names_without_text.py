@@ -34,7 +34,7 @@ def test_profile_and_output(folder, reports):
     found = reports(folder / os.fsdecode(b"it's \xff"))
     command = found.json["provenance"]["command"]
     assert command == r"pvlvrt-check --profile $'\xe9.toml' --sag 90% --output $'it\'s \xff'"
-    assert found.page.xpath("//dl[@class='run']//code")[0].text == command
+    assert found.page.xpath("//dl[@class='run']//code")[0].text_content() == command
     assert {p.get("value") for p in found.junit.iterfind(".//property[@name='command']")} == {command}
     words = subprocess.run(["bash", "-c", f"printf '%s\\n' {command}"], capture_output=True, check=True).stdout
     assert words.split(b"\n")[2:7:4] == [b"\xe9.toml", b"it's \xff"]

@@ -10,7 +10,7 @@ import pvlvrt_compliance.cli
 FOLDER = Path(pvlvrt_compliance.cli.__file__).parent
 NAME = "pvlvrt_compliance."
 
-RUNS = {"api", "study"}
+RUNS = {"api", "output", "study"}
 """Rooms that run something."""
 
 SIMULATES = {"simulation", "controllers", "plant", "control", "hardware", "kernel"}
@@ -19,7 +19,7 @@ SIMULATES = {"simulation", "controllers", "plant", "control", "hardware", "kerne
 # By file: what of these rooms it touches. Whatever is not here touches none, and starts light.
 TOUCHES = {
     "check.py": {"study.job"},
-    "running.py": {"api", "study.job", "study.running", "controllers.process"},
+    "running.py": {"output", "study.job", "study.running", "controllers.process"},
     "catalogue.py": {"study.job"},
     "main.py": {"controllers.process"},
     "controllers/inspect.py": {"controllers", "simulation.parameters"},  # which load no kernel

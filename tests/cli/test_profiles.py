@@ -88,7 +88,7 @@ def test_show_spells_numbers_with_units(command):
     """Units stand behind the numbers, points as pairs, flags as words."""
     out = command("profiles", "show", "iec61400-21").out
     assert "recovery time: 1 s (from clearing) [chosen]" in out
-    assert "limit: 0.15 % [chosen]" in out
+    assert "limit: 0.15 % (amplitude, of the mean DC voltage) [chosen]" in out
     assert "(0, 0), (0.15, 0), (1.5, 0.85)" in out
     assert "clip to capability: yes" in out
     assert "full: 1000 W/m2 [chosen]" in out

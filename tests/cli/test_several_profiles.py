@@ -47,7 +47,7 @@ def test_one_sag_two_sets_of_verdicts(command, reports, tmp_path, simulated):
     assert suites == ["iec61400-21.sag-90pct-abc", "spain-q-curve.sag-90pct-abc"]
     headings = [heading.text_content() for heading in found.page.xpath("//section[@class='test']/h2")]
     assert [text.split()[0] for text in headings] == suites
-    assert len(found.page.xpath("//div[@class='plot']")) == 2
+    assert len(found.page.xpath("//div[@class='figures']")) == 2
 
 
 def test_the_longest_demand_counts(command, reports, tmp_path):
@@ -115,7 +115,7 @@ def test_which_waveforms_are_kept(command, reports, tmp_path, kept, files):
     found = reports(tmp_path)
     assert len([name for name in found.files if name.endswith(".cfg")]) == files
     assert sum(test["waveforms"] is not None for test in found.json["tests"]) == files
-    assert len(found.page.xpath("//div[@class='plot']")) == 2
+    assert len(found.page.xpath("//div[@class='figures']")) == 2
 
 
 def test_waveforms_of_an_unknown_kind(command):

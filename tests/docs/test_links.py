@@ -11,14 +11,15 @@ ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 FRONT = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
 PAGES = sorted(DOCS.rglob("*.md"))
-INDEX = DOCS / "index.md"
-PICTURES, DATA = {".png", ".svg"}, {".csv"}
+SITE = ROOT / "mkdocs.yml"
+PICTURES, DATA, STYLE = {".png", ".svg"}, {".csv"}, {DOCS / "site.css"}
 WITH_CODE = ("pvlvrt_compliance", "validation", "tests", "benchmarks", "profiles", "reports", "examples")
 
 _FENCED = re.compile(r"^( *)```.*?^\1```", re.MULTILINE | re.DOTALL)
 _IN_LINE = re.compile(r"`[^`]*`")
 _LINK = re.compile(r"\]\(([^)\s]+)\)")
 _NAMED = re.compile(rf"`((?:docs|{'|'.join(WITH_CODE)})/[\w./-]*)`")
+_IN_NAVIGATION = re.compile(r"([\w./-]+\.md)$", re.MULTILINE)
 _PAGE_NAMED = re.compile(r"docs/[\w/-]+\.\w+")
 
 
@@ -32,6 +33,10 @@ class Link(NamedTuple):
 def files_in_docs() -> list[Path]:
     """All files, but for what Python left behind where code used to be."""
     return [path for path in DOCS.rglob("*") if path.is_file() and "__pycache__" not in path.parts]
+
+
+def _as_named(page: Path) -> str:
+    return page.relative_to(DOCS).as_posix()
 
 
 def text_of(page: Path) -> str:
@@ -84,15 +89,41 @@ def test_every_page_that_code_names_is_there():
 
 
 def test_docs_holds_pages_only():
-    """Pages, pictures and data; what makes them lies in `validation/`."""
-    assert {path.suffix for path in files_in_docs()} <= {".md"} | PICTURES | DATA
+    """Pages, pictures, data and how the site looks; what makes them lies in `validation/`."""
+    assert {path.suffix for path in files_in_docs() if path not in STYLE} <= {".md"} | PICTURES | DATA
 
 
 def test_every_file_of_docs_is_linked():
-    """A picture or table that no page shows is left over; each page stands in the index."""
+    """A picture or table that no page shows is left over, and so is a page that no other one leads to."""
     linked = {link.file for page in [*FRONT, *PAGES] for link in links(page) if link.file != page}
-    assert set(files_in_docs()) - linked == set()
-    assert set(PAGES) - {link.file for link in links(INDEX)} == {INDEX}
+    assert set(files_in_docs()) - linked == STYLE
+
+
+def test_every_page_stands_in_the_navigation():
+    """Once each, and nothing that there is not."""
+    named = _IN_NAVIGATION.findall(SITE.read_text("utf-8"))
+    assert sorted(named) == [page.relative_to(DOCS).as_posix() for page in sorted(PAGES, key=_as_named)]
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(DOCS).as_posix())
+def test_no_page_leads_out_of_the_site(page):
+    """What is no page, picture or table of `docs/` is named, not linked: the site does not have it."""
+    assert [str(link.file) for link in links(page) if not link.file.is_relative_to(DOCS)] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(DOCS).as_posix())
+def test_the_site_reads_lists_as_they_are_meant(page):
+    """The site takes a list that follows a line of text for more text, and in lists wants steps of four blanks."""
+    assert re.findall(r"^(?:    )* {1,3}```.*", page.read_text("utf-8"), re.MULTILINE) == []
+    text = _FENCED.sub("", page.read_text("utf-8"))
+    assert re.findall(r"^(?! *(?:[-*]|\d+\.) )(?! )[^\n<|]+\n(?:- |\d+\. ).*", text, re.MULTILINE) == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(DOCS).as_posix())
+def test_no_bar_stands_in_code_of_a_table(page):
+    """Where a page of the repository shows a bar, the site would show its backslash, too."""
+    lines = _FENCED.sub("", page.read_text("utf-8")).splitlines()
+    assert [line for line in lines for code in line.split("`")[1::2] if r"\|" in code] == []
 
 
 @pytest.mark.parametrize(

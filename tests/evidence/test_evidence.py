@@ -5,48 +5,12 @@ import dataclasses
 import numpy as np
 import pytest
 
-from pvlvrt_compliance.disturbance.asked import disturbance_asked
-from pvlvrt_compliance.disturbance.model import NormalVoltage
-from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, floors_of
+from made_evidence import DT_S, INNER, evidence_of
+from pvlvrt_compliance.evidence.evidence import NotApplicable, floors_of
 from pvlvrt_compliance.evidence.stretches import after_each_step, between_steps_s, settled_pu, settling_s
 from pvlvrt_compliance.evidence.voltages import voltage_quantity_pu
-from pvlvrt_compliance.measure.summary import STANDARD_FLOORS, measure
-from pvlvrt_compliance.measure.windows import STANDARD_RULES
+from pvlvrt_compliance.measure.summary import STANDARD_FLOORS
 from pvlvrt_compliance.profile.thresholds import STANDARD_THRESHOLDS
-from pvlvrt_compliance.scenario.sag import Sag
-from pvlvrt_compliance.scenario.scenario import Scenario
-from pvlvrt_compliance.units import Nominal
-from pvlvrt_compliance.waveforms.container import Segment, Waveforms
-
-NORMAL = NormalVoltage(low_pu=0.9, high_pu=1.1, negative_pu=0.1)
-INNER = {"kind": "sag", "t_s": 0.2, "duration_s": 0.15, "sag": {"depth": 0.8}}
-DT_S = 1e-4
-
-
-def evidence_of(
-    duration_s: float = 0.6,
-    events=(INNER,),
-    levels=((0.0, 1.0), (0.3, 0.7), (0.5, 0.2), (0.65, 0.7), (0.9, 1.0)),
-    **channels,
-):
-    """A balanced voltage of these levels, and whatever other channels are given, as functions of time."""
-    scenario = Scenario(sag=Sag(depth=0.3), duration_s=duration_s, events=events)
-    t = DT_S * np.arange(int(scenario.end_s / DT_S))
-    begins, level = zip(*levels, strict=True)
-    u = np.sqrt(2) * 230 * np.array(level)[np.searchsorted(begins, t, side="right") - 1]
-    angle = 2 * np.pi * (50 * t - np.arange(3)[:, np.newaxis] / 3)
-    made = dict(zip(("u_a_v", "u_b_v", "u_c_v"), u * np.cos(angle), strict=True))
-    waveforms = Waveforms((Segment(0.0, DT_S, made | {name: f(t) for name, f in channels.items()}),))
-    asked = disturbance_asked(scenario, NORMAL)
-    return Evidence(
-        waveforms=waveforms,
-        nominal=Nominal(),
-        disturbance=asked,
-        available_power_w=500e3,
-        measurements=measure(waveforms, Nominal(), asked.start_s, asked.clear_s),
-        rules=STANDARD_RULES,
-        blocked_below_pu=0.01,
-    )
 
 
 def test_stretches_follow_the_steps_of_the_voltage():
@@ -121,3 +85,14 @@ def test_windows_are_measured_by_the_floors_of_the_profile():
     faint = dataclasses.replace(evidence_of(), thresholds=thresholds).measured_stretches[0].window
     assert usual.voltage_positive_pu == faint.voltage_positive_pu == pytest.approx(0.7, abs=1e-6)
     assert (usual.frequency_hz, faint.frequency_hz) == (pytest.approx(50, abs=1e-3), None)
+
+
+def test_what_is_made_of_a_record_is_made_once():
+    """By its key, whatever would be made the next time; another key and another record have their own."""
+    evidence, other = evidence_of(), evidence_of()
+    assert [evidence.once("a", lambda: 1), evidence.once("a", lambda: 2), evidence.once(("a", 0.3), lambda: 3)] == [
+        1,
+        1,
+        3,
+    ]
+    assert other.once("a", lambda: 4) == 4

@@ -92,7 +92,7 @@ def test_wheel_has_nothing_else(wheel_files):
     tops = {name.partition("/")[0] for name in wheel_files}
     assert {top for top in tops if not top.endswith(".dist-info")} == {_NAME}
     inside = {Path(name).suffix for name in wheel_files if name.startswith(f"{_NAME}/")}
-    assert inside <= {".py", ".typed", ".toml", ".j2", ".css", ".js", ".svg", ".c", ".h", ".md", ".yml", ""}
+    assert inside <= {".py", ".typed", ".toml", ".j2", ".typ", ".css", ".js", ".svg", ".c", ".h", ".md", ".yml", ""}
     assert not any("cache" in name for name in wheel_files)
     assert any(name.endswith("/licenses/LICENSE") for name in wheel_files)
 

@@ -12,13 +12,15 @@ from pvlvrt_compliance.checks.current import reactive_current, reactive_support
 from pvlvrt_compliance.checks.evaluate import evaluate
 from pvlvrt_compliance.checks.power import active_power_support, oscillation
 from pvlvrt_compliance.checks.quality import harmonics
+from pvlvrt_compliance.evidence import cursors as set_cursors
 from pvlvrt_compliance.evidence import evidence, excursions, series
 from pvlvrt_compliance.measure import summary, swing, windows
 from pvlvrt_compliance.measure.groups import harmonic_subgroups
 from pvlvrt_compliance.measure.power import Power, instantaneous_power, sequence_current
+from pvlvrt_compliance.measure.response import step_response
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.units import Nominal
-from recomputing import judge
+from recomputing import cursors, judge
 from recomputing.comparing import differences, read_csv
 
 pytestmark = pytest.mark.slow
@@ -173,3 +175,39 @@ def test_changed_definition_is_noticed(what, simulated, monkeypatch):
     again = evaluate(found.profile, found.test, found.waveforms, nominal, 1e3 * found.result.available_power_kw)
     other = {check.check: json.loads(check.model_dump_json()) for check in again.checks}
     assert [text for verdict in recomputed for text in differences(other[verdict.check], verdict)] != []
+
+
+OF_CURSORS = {
+    "extremes count from the step": ("settling_s", lambda _: 0.0),
+    "what is reached is the whole settled window": (
+        "last_window",
+        lambda begin_s, end_s, hz, rules: windows.settled_window(begin_s, end_s - 0.08, hz, rules),
+    ),
+    "times count a cycle late": (
+        "step_response",
+        lambda t_s, x, event_s, *levels: step_response(t_s, x, event_s + 0.02, *levels),
+    ),
+    "the frequency is not held": ("frequency_hz", lambda seen: seen.tracked_frequency_hz),
+    "the current is the mean of the phases": ("np", type("np", (), {**vars(np), "max": staticmethod(np.mean)})),
+}
+
+
+@pytest.fixture(scope="module")
+def with_cursors(tmp_path_factory):
+    """A fault of one phase with a step of the frequency in it, and its cursors recomputed."""
+    found = run(own(NTS, 0.8, 0.3, {"kind": "frequency_step", "t_s": 0.1, "to_hz": 50.5}, phases="a"))
+    profile = json.loads(found.profile.model_dump_json(by_alias=True, exclude_none=True))
+    waveforms = read_csv(written(found, tmp_path_factory.mktemp("cursors")))
+    return found, cursors.recompute(json.loads(found.result.model_dump_json()), profile, waveforms)
+
+
+@pytest.mark.parametrize("what", OF_CURSORS)
+def test_changed_cursor_is_noticed(what, with_cursors, monkeypatch):
+    """With the definition as it is every cursor is recomputed; changed in the package, one at least is not."""
+    found, redone = with_cursors
+    assert cursors.differences(json.loads(found.result.model_dump_json())["cursors"], redone) == []
+    name, changed = OF_CURSORS[what]
+    monkeypatch.setattr(set_cursors, name, changed)
+    nominal = Nominal(frequency_hz=found.result.rating.frequency_hz)
+    again = evaluate(found.profile, found.test, found.waveforms, nominal, 1e3 * found.result.available_power_kw)
+    assert cursors.differences(json.loads(again.model_dump_json())["cursors"], redone) != []

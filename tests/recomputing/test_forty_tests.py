@@ -10,7 +10,7 @@ import pytest
 
 from forty_tests import CASES, run, written
 from pvlvrt_compliance.profile import known_profiles
-from recomputing import JUDGES, judge
+from recomputing import JUDGES, cursors, judge
 from recomputing.comparing import differences, read_csv
 
 PROGRAM = Path(__file__).parent / "recomputing"
@@ -19,11 +19,13 @@ PROGRAM = Path(__file__).parent / "recomputing"
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_each_verdict_is_recomputed_from_the_files(case, tmp_path):
-    """Status, measured, limit and margin of every check come out of CSV, profile and what the grid did."""
+    """All cursors, and every check's status, measured, limit and margin, come out of CSV, profile and disturbance."""
     found = run(case)
     result = json.loads(found.result.model_dump_json())
     profile = json.loads(found.profile.model_dump_json(by_alias=True, exclude_none=True))
-    recomputed = judge(result, profile, read_csv(written(found, tmp_path)))
+    waveforms = read_csv(written(found, tmp_path))
+    assert cursors.differences(result["cursors"], cursors.recompute(result, profile, waveforms)) == []
+    recomputed = judge(result, profile, waveforms)
     told = {check["check"]: check for check in result["checks"]}
     assert [verdict.check for verdict in recomputed] == list(told)
     assert [text for verdict in recomputed for text in differences(told[verdict.check], verdict)] == []

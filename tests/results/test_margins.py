@@ -57,6 +57,15 @@ def test_the_worst_margin_is_the_least_share():
     assert (found.test.id, found.verdict) == ("1", failed)
 
 
+def test_the_worst_margins_come_worst_first():
+    """As many as are asked for, or as there are; the first is the worst one."""
+    margins = (0.3, 0.1, 0.2)
+    found = results(*[(verdict(limit=1.0, margin=m),) for m in margins])
+    assert [each.verdict.margin for each in found.worst_margins(2)] == [0.1, 0.2]
+    assert [each.verdict.margin for each in found.worst_margins(9)] == sorted(margins)
+    assert found.worst_margins(1) == (found.worst_margin(),)
+
+
 def test_what_was_not_judged_has_no_margin():
     """A verdict that neither passed nor failed, or has no margin, is none of the worst."""
     unjudged = verdict(Status.NOT_EVALUATED, limit=1.0, margin=-5.0)

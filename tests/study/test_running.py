@@ -5,7 +5,7 @@ from contextlib import nullcontext
 
 import pytest
 
-from pvlvrt_compliance.api import output_in
+from pvlvrt_compliance.output import output_in
 from pvlvrt_compliance.results import Status
 from pvlvrt_compliance.study.job import Asked, make_job
 from pvlvrt_compliance.study.running import run_job

@@ -277,3 +277,14 @@ def test_messages_name_what_was_typed(tmp_path):
             with pytest.raises(UsageError) as error:
                 OutputFolder(folder, spell)
             assert str(error.value).startswith(f"{spelled}{said}")
+
+
+@pytest.mark.parametrize("text", ["%PDF of {}", "%PDF of nobody"], ids=["of the run before", "another's"])
+def test_a_pdf_goes_with_its_run(tmp_path, text):
+    """A run that writes none leaves none of the run before beside its own files; one of nobody knows whom stays."""
+    output = small_runs.stage(tmp_path, "first")
+    output.write(store.REPORT_PDF, text.format(ID["first"]))
+    output.finish()
+    small_runs.stage(tmp_path, "second").finish()
+    assert small_runs.ids(tmp_path)[RESULTS] == ID["second"]
+    assert (tmp_path / store.REPORT_PDF).exists() is (text.format("") == text)

@@ -44,7 +44,7 @@ def test_a_program_that_is_missing(monkeypatch, capsys):
 def test_every_page_has_the_same_command():
     """Each folder is `python -m validation.<folder>`."""
     folders = {path.parent.name for path in FOLDER.glob("*/*.py")}
-    assert folders >= {"simulator", "mutations", "grid_codes", "fidelity", "paper"}
+    assert folders >= {"simulator", "mutations", "grid_codes", "fidelity", "paper", "blocks"}
     assert [name for name in folders if find_spec(f"validation.{name}.__main__") is None] == []
 
 

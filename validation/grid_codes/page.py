@@ -1,14 +1,11 @@
 """The page on the grid codes, from verdicts of every shipped profile on the paper's controller."""
 
 import csv
-import json
-import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
-from pathlib import Path
 from typing import Any
 
-from pvlvrt_compliance.cli.main import run
+from pvlvrt_compliance import api
 from pvlvrt_compliance.data.marks import marks_in
 from pvlvrt_compliance.data.search_path import SHIPPED, known_profiles
 from pvlvrt_compliance.profile import Profile
@@ -39,13 +36,10 @@ The relay of the plant follows the Spanish envelope and opens before the codes b
 Test = dict[str, Any]
 
 
-def judged(profiles: Iterable[str], *options: str) -> list[Test]:
-    """Run profiles and return the tests of results.json."""
-    with tempfile.TemporaryDirectory() as folder:
-        names = [part for name in profiles for part in ("--profile", name)]
-        run([*names, *options, "--output", folder, "--waveforms", "none", "--quiet"])
-        tests: list[Test] = json.loads((Path(folder) / "results.json").read_text("utf-8"))["tests"]
-    return tests
+def judged(profiles: Iterable[str], *, tests: Sequence[str] = (), settings: Sequence[str] = ()) -> list[Test]:
+    """Run profiles and return their tests as results.json has them; no report is made."""
+    found: list[Test] = api.check(list(profiles), tests=tests, settings=settings).model_dump(mode="json")["tests"]
+    return found
 
 
 def shipped() -> list[str]:
@@ -141,7 +135,7 @@ def without_relay(tests: Sequence[Test]) -> str:
     failed = [t for t in tests if any(c["check"] == "ride_through" and c["status"] == "fail" for c in t["checks"])]
     for profile, group in groupby(failed, key=lambda test: test["profile"]):
         ids = [test["id"] for test in group]
-        again = judged([profile], "--set", NO_UNDERVOLTAGE_RELAY, *(part for name in ids for part in ("--test", name)))
+        again = judged([profile], settings=[NO_UNDERVOLTAGE_RELAY], tests=ids)
         bad = [t["id"] for t in again if not _rides_through(t)]
         lines.append(f"| {profile} | {len(ids)} | {len(again) - len(bad)} | {', '.join(f'`{n}`' for n in bad)} |")
     return "\n".join(lines) + "\n"
@@ -170,7 +164,7 @@ def check() -> list[str]:
     }
     problems = [f"{'.'.join(key)} is not in the table" for key in of_tests.keys() - written.keys()]
     whole_rows = _rows_of_short_tests(of_tests)
-    found = judged(profiles, *(part for key in whole_rows for part in ("--test", ".".join(key))))
+    found = judged(profiles, tests=[".".join(key) for key in whole_rows])
     return problems + [
         f"{'.'.join(line[:2])}: {line[2]}" for line in map(row, found) if written.get((line[0], line[1])) != line[2]
     ]

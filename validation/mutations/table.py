@@ -147,12 +147,12 @@ def how(mutant: Mutant) -> str:
 _HEAD = """# Mutations
 
 Do the checks tell a wrong controller from the right one? Below, {count} controllers and plants with one mistake each go
-through every test of [`mutation-table.toml`](../validation/mutations/mutation-table.toml), a profile that has every
+through every test of `validation/mutations/mutation-table.toml`, a profile that has every
 kind of requirement and that the paper's control meets (first row). Two of its tests have several stretches (two sags
 and a swell; a fault whose inner level is deeper), for controllers that are right in the first sag and wrong in a later
 one. **F**: the check failed in at least one test; a dot: it passed wherever it had something to judge; empty: it had
 nothing to judge, or the inverter had stopped. Which checks must fail is stated in
-[`mutants.py`](../validation/mutations/mutants.py) and the `*_mutants.py` beside it, with the reason, before anything is
+`validation/mutations/mutants.py` and the `*_mutants.py` beside it, with the reason, before anything is
 run, and `tests/study/test_mutations.py` demands exactly these. The page is written by `python -m validation.mutations`;
 `--check` runs everything anew and compares.
 """
@@ -161,8 +161,8 @@ _REASONS = """## Why
 
 Settings are shown as the command line takes them, for instance `pvlvrt-check --profile
 validation/mutations/mutation-table.toml --set controller.fll_gain=0`. The others run in one compiled controller:
-`Wrong` is a branch of [`wrong_controllers.py`](../validation/mutations/wrong_controllers.py), `Slip` what goes wrong,
-by how much and when, in numbers of [`slips.py`](../validation/mutations/slips.py): in which sags, from when on in them,
+`Wrong` is a branch of `validation/mutations/wrong_controllers.py`, `Slip` what goes wrong,
+by how much and when, in numbers of `validation/mutations/slips.py`: in which sags, from when on in them,
 at which V+. A slip with `first=2` leaves the first sag right, one with `low_pu` and `high_pu` all levels but one.
 """
 

@@ -24,7 +24,7 @@ class Passed(NamedTuple):
     error: complex  # in the error of the loop (-)
 
 
-def generators(orders: tuple[int, ...], K: float, h: int) -> Passed:
+def generators(orders: tuple[int, ...], K: float, h: float) -> Passed:
     """DSOGI-QSGs that decouple each other: u'_i = G_i e, e = u - sum of all u'_i, G_i = K w s / (s^2 + (i w)^2)."""
     if abs(h) in orders and abs(h) != 1:
         return Passed(0j, 0j, 0j)
@@ -33,13 +33,13 @@ def generators(orders: tuple[int, ...], K: float, h: int) -> Passed:
     return Passed(u * (1 + 1 / h) / 2, u * (1 - 1 / h) / 2, e)
 
 
-def notch(n: int) -> complex:
+def notch(n: float) -> complex:
     """The srf-pll's notch at twice the frequency, at n times the frequency."""
     return (4 - n * n) / (4 - n * n + 4j * _P.pnsd_notch_damping * n)
 
 
-def passed(name: str, h: int) -> Passed:
-    """What a synchronisation passes of a harmonic of order ``h`` (not 1 or -1)."""
+def passed(name: str, h: float) -> Passed:
+    """What a synchronisation passes at an order ``h``, whole or not (not 1 or -1)."""
     if name == "srf-pll":
         return Passed(notch(h - 1), notch(h + 1), notch(h - 1))
     if name == "dsc-pll":

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from pvlvrt_compliance.checks.verdicts import judged
 from pvlvrt_compliance.data.marks import Marked
+from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.profile.requirements import Requirement
 from pvlvrt_compliance.results import Status, Verdict
 
@@ -29,6 +30,12 @@ class Demand(NamedTuple):
     def in_words(self) -> str:
         """What demands how much, as a message says it."""
         return f"{self.by} demands {self.stay_s:.3f} s"
+
+    def of_row_alone(self, evidence: Evidence) -> "Demand":
+        """The same with clause and mark of the row of the test table, where one demands all of its disturbance."""
+        if evidence.expect != "ride_through" or evidence.row is None:
+            return self
+        return self._replace(clause=evidence.row.clause, mark=evidence.row)
 
     def at_most(self, until_s: float) -> "Demand":
         """The same, no longer than to an instant of the record (s)."""

@@ -90,6 +90,14 @@ def _applied(requirement: RideThrough, evidence: Evidence) -> Iterator[tuple[Env
         yield high, Side.HIGH, "the over-voltage envelope"
 
 
+def deciding_envelope(requirement: RideThrough, evidence: Evidence) -> Envelope | None:
+    """The envelope that a record as a whole is held against: the over-voltage one where the voltage only rises."""
+    kinds = {stretch.kind for stretch in evidence.disturbance.stretches}
+    applied = {side: envelope for envelope, side, _ in _applied(requirement, evidence)}
+    only_rises = "swell" in kinds and "sag" not in kinds
+    return applied.get(Side.HIGH if only_rises else Side.LOW, requirement.envelope)
+
+
 def is_two_phase(evidence: Evidence) -> bool:
     """Whether the sag is that of an isolated two-phase fault, by the voltages without the inverter's current.
 

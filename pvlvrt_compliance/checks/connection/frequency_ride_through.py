@@ -68,8 +68,10 @@ class FrequencyRideThroughCheck(Check):
         stop = _stop(evidence)
         if stop is None:
             end_s = max(evidence.record_end_s, always.until_s)
+            let_go = release is not None and release.until_s <= always.until_s
+            demand = always.of_row_alone(evidence) if let_go else always
             return judged_stay(
-                KIND, requirement, Status.PASS, f"connected throughout; {seen}", always, stopped_at_s=end_s
+                KIND, requirement, Status.PASS, f"connected throughout; {seen}", demand, stopped_at_s=end_s
             )
         if not evidence.disturbance.is_normal(stop.at_s):
             raise NotApplicable(f"{stop.how} while the voltage was not normal, which is judged by ride_through")
@@ -111,8 +113,10 @@ def _judge_stop(
     message = f"{stop.how} at {stop.at_s:.3f} s, {stop.at_s - begun_s:.3f} s after {begun_s:.3f} s; {seen}"
     whole = evidence.expect == "ride_through" and stop.at_s < evidence.disturbance.end_s
     if whole:
+        let_go = release is not None and release.until_s <= stop.at_s
+        demand = always.of_row_alone(evidence) if let_go else always
         return judged_stay(
-            KIND, requirement, Status.FAIL, f"{message}; {always.in_words}", always, stopped_at_s=stop.at_s
+            KIND, requirement, Status.FAIL, f"{message}; {demand.in_words}", demand, stopped_at_s=stop.at_s
         )
     if release is None or stop.at_s < release.since_s:
         words = f"{message}; every frequency and rate up to then demands connection"

@@ -154,7 +154,7 @@ def _judge_trip(requirement: PhaseJumpRideThrough, evidence: Evidence, jumps: li
     grid = evidence.disturbance
     jump = next(jump for jump in reversed(jumps) if jump.at_s <= stop.at_s)
     mark, clause = requirement.all_phases_deg, requirement.clause
-    demand = Demand(jump.at_s, max(grid.end_s - jump.at_s, 0.0), "the test", clause, mark)
+    demand = Demand(jump.at_s, max(grid.end_s - jump.at_s, 0.0), "the code", clause, mark)
     message = (
         f"{stop.in_words}, {stop.at_s - jump.at_s:.3f} s after a jump of {jump.in_words} ({jump.seen}); the code"
         " demands connection"

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from pvlvrt_compliance.checks.connection.demand import Demand
-from pvlvrt_compliance.checks.connection.envelopes import Limit, envelope_limits
+from pvlvrt_compliance.checks.connection.envelopes import Limit, deciding_envelope, envelope_limits
 from pvlvrt_compliance.checks.connection.regions import Visit, region_limits, visits
 from pvlvrt_compliance.data.marks import Marked
 from pvlvrt_compliance.evidence.evidence import Evidence
@@ -30,14 +30,24 @@ class Limits(NamedTuple):
         ahead = [demand for demand in found if at_s < demand.until_s < float("inf")]
         return min(ahead, key=lambda demand: demand.until_s, default=None)
 
-    def whole(self, evidence: Evidence) -> Demand:
-        """Ride through the disturbance from its start to its end."""
-        grid = evidence.disturbance
+    def whole(self, evidence: Evidence, stopped_at_s: float | None = None) -> Demand:
+        """Ride through the disturbance from its start to its end.
+
+        Parameters
+        ----------
+        stopped_at_s : float, optional
+            When the inverter let go (s), None of one that stayed. Had the voltage let it go by then, or did no voltage
+            move at all, the row of the test table alone demands it.
+        """
+        grid, release = evidence.disturbance, self.release
         by = "the test" if evidence.expect == "ride_through" else "a voltage within its limits"
         if not self.limits:
             by = "the profile, which has no envelope,"
         uncertain_s = evidence.thresholds.uncertainty_instant_s.value
-        return Demand(grid.start_s, grid.end_s - grid.start_s, by, self.clause, self.mark, uncertain_s)
+        demand = Demand(grid.start_s, grid.end_s - grid.start_s, by, self.clause, self.mark, uncertain_s)
+        at_s = grid.end_s if stopped_at_s is None else stopped_at_s
+        let_go = not grid.voltage_steps_s or (release is not None and release.until_s <= at_s)
+        return demand.of_row_alone(evidence) if let_go and at_s <= grid.end_s else demand
 
 
 def limits_of(requirement: RideThrough, evidence: Evidence) -> Limits:
@@ -53,7 +63,7 @@ def limits_of(requirement: RideThrough, evidence: Evidence) -> Limits:
         tolerance_pu = requirement.envelope_tolerance_pu.value
         found = visits(requirement.regions, tolerance_pu, evidence, "no_load")
         limits += region_limits(requirement.regions, found, evidence)
-    decides = requirement.envelope or requirement.regions
+    decides = deciding_envelope(requirement, evidence) or requirement.regions
     clause = requirement.clause if decides is None else decides.clause or requirement.clause
     return Limits(tuple(limits), found, clause, decides or requirement.envelope_tolerance_pu)
 

@@ -99,4 +99,5 @@ def _counted(requirement: RepeatedRuns, ridden: int, wanted: int, message: str) 
         unit="runs",
         at_s=0.0,
         rests_on=rests_on,
+        bound="at_least",
     )

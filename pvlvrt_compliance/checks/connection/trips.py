@@ -26,14 +26,14 @@ def judged_trip(requirement: RideThrough, evidence: Evidence, limits: Limits, st
     """
     grid, moved = evidence.disturbance, moved_at(evidence, stop.at_s)
     if evidence.expect == "ride_through" and stop.at_s < grid.end_s:
-        return _broken_off(requirement, evidence, stop, limits.whole(evidence))
+        return _broken_off(requirement, evidence, stop, limits.whole(evidence, stop.at_s))
     release = limits.release
     released = release is not None and stop.at_s >= release.until_s
     if release is not None and released and evidence.expect != "ride_through" and (moved or stop.at_s < grid.end_s):
         return _released(requirement, evidence, release, stop)
     if moved in ("low voltage", "high voltage") and not released:
         _require_a_limit(requirement, evidence, moved, stop)
-        demand = limits.demand_at(stop.at_s) or limits.whole(evidence)
+        demand = limits.demand_at(stop.at_s) or limits.whole(evidence, stop.at_s)
         return _broken_off(requirement, evidence, stop, demand.at_most(max(grid.end_s, stop.at_s)))
     if moved is not None:
         _leave_to_others(evidence, moved, stop)
@@ -64,7 +64,7 @@ def _broken_off(requirement: RideThrough, evidence: Evidence, stop: Stop, demand
 
 def _in_a_normal_grid(requirement: RideThrough, evidence: Evidence, limits: Limits, stop: Stop) -> Verdict:
     grid = evidence.disturbance
-    demand = limits.whole(evidence)
+    demand = limits.whole(evidence, stop.at_s)
     if stop.at_s < grid.end_s and grid.steps:
         return _broken_off(requirement, evidence, stop, demand)
     after = f"{stop.at_s - grid.start_s:.3f} s after the start"

@@ -30,7 +30,7 @@ from pvlvrt_compliance.measure.response import first_reached, last_entry
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.profile.procedure import Detection
 from pvlvrt_compliance.profile.requirements import ReactiveCurrent, SupportDynamics
-from pvlvrt_compliance.results import Band, Verdict
+from pvlvrt_compliance.results import Drawn, Instant, Verdict
 from pvlvrt_compliance.results.band import REACTIVE_CURRENT
 from pvlvrt_compliance.waveforms.container import Samples
 
@@ -77,21 +77,31 @@ class SupportDynamicsCheck(StretchCheck):
         if demand is None and is_blocked(evidence, window):
             return blocked_where_due(KIND, requirement, evidence, window, (requirement.activation_pu,))
         t_s, support, task = _response(requirement, evidence, stretch, window)
-        return judged_by_parts(KIND, requirement, _parts(requirement, evidence, t_s, support, task))
+        parts = [time.part for time in _times(requirement, evidence, t_s, support, task)]
+        return judged_by_parts(KIND, requirement, parts)
 
-    def limits(self, requirement: SupportDynamics, evidence: Evidence) -> tuple[Band, ...]:
-        """Between what the current has to stay once the time to settle is over, in each stretch."""
+    def limits(self, requirement: SupportDynamics, evidence: Evidence) -> tuple[Drawn, ...]:
+        """Between what the current has to stay once it has to be settled, and when it came and settled, a stretch."""
 
-        def bands(stretch: Stretch) -> Iterator[Band]:
+        def drawn(stretch: Stretch) -> Iterator[Drawn]:
             window = evidence.window_of(stretch, despite=ANY_LIGHT)
             t_s, support, task = _response(requirement, evidence, stretch, window)
+            for name, part, is_over in _times(requirement, evidence, t_s, support, task):
+                if is_over:
+                    yield _instant(name, part)
             activated_s = _activated_s(requirement, t_s, support, task)
             if activated_s is not None and (from_s := activated_s + requirement.settling_s.value) < stretch.end_s:
                 before = reactive_before(POSITIVE, evidence)
                 low, high = sorted(before + task.sign * edge for edge in (task.low, task.high))
                 yield level(KIND, REACTIVE_CURRENT, "settled", (from_s, float(t_s[-1])), lower=low, upper=high)
 
-        return of_each(self.stretches(requirement, evidence), bands)
+        return of_each(self.stretches(requirement, evidence), drawn)
+
+
+def _instant(name: str, part: Part) -> Instant:
+    return Instant(
+        check=KIND, quantity=REACTIVE_CURRENT, name=name, at_s=part.at_s, took_s=part.measured, limit_s=part.limit
+    )
 
 
 def _response(
@@ -188,7 +198,17 @@ def _thresholds(detection: Detection) -> EventThresholds:
     )
 
 
-def _parts(requirement: SupportDynamics, evidence: Evidence, t_s: Samples, support: Samples, task: _Task) -> list[Part]:
+class _Time(NamedTuple):
+    """One of the times that are judged."""
+
+    name: str
+    part: Part
+    is_over: bool  # whether what it is the time of has come
+
+
+def _times(
+    requirement: SupportDynamics, evidence: Evidence, t_s: Samples, support: Samples, task: _Task
+) -> list[_Time]:
     """The times; ``support`` is the additional current, positive where it is more support (pu).
 
     Of a current that is never active there is no settling.
@@ -201,14 +221,16 @@ def _parts(requirement: SupportDynamics, evidence: Evidence, t_s: Samples, suppo
     timed = partial(_time, uncertainty=evidence.half_cycle_s)
     found = [
         timed(
-            f"activation, to {size.value:g} pu of additional reactive current",
+            "activation",
+            f", to {size.value:g} pu of additional reactive current",
             observed,
             activated_s,
             requirement.activation_s,
             (size,),
         ),
         timed(
-            f"response, to {100 * share.value:g} % of the way from {task.before:.3f} pu to the {task.goal:.3f} pu due",
+            "response",
+            f", to {100 * share.value:g} % of the way from {task.before:.3f} pu to the {task.goal:.3f} pu due",
             observed,
             responded_s,
             requirement.response_s,
@@ -219,7 +241,8 @@ def _parts(requirement: SupportDynamics, evidence: Evidence, t_s: Samples, suppo
         return found
     entered_s = last_entry(t_s, support, task.low, task.high)
     settled = timed(
-        f"settling, from activation, between {task.low:.3f} pu and {task.high:.3f} pu",
+        "settling",
+        f", from activation, between {task.low:.3f} pu and {task.high:.3f} pu",
         Span(activated_s, observed.end_s),
         None if entered_s is None else max(entered_s, activated_s),
         requirement.settling_s,
@@ -233,8 +256,14 @@ def _activated_s(requirement: SupportDynamics, t_s: Samples, support: Samples, t
 
 
 def _time(
-    what: str, observed: Span, reached_s: float | None, limit: Number, rests_on: tuple[Marked, ...], uncertainty: float
-) -> Part:
+    name: str,
+    what: str,
+    observed: Span,
+    reached_s: float | None,
+    limit: Number,
+    rests_on: tuple[Marked, ...],
+    uncertainty: float,
+) -> _Time:
     """Time to an instant; what is never reached took all that was observed.
 
     Raises
@@ -245,5 +274,6 @@ def _time(
     at_s = observed.end_s if reached_s is None else reached_s
     took_s = at_s - observed.start_s
     if reached_s is None and took_s <= limit.value:
-        raise NotApplicable(f"the sag is over {took_s:.3f} s after the start of the {what}, before its limit")
-    return Part(what, took_s, limit.value, "s", at_s, (limit, *rests_on), uncertainty)
+        raise NotApplicable(f"the sag is over {took_s:.3f} s after the start of the {name}{what}, before its limit")
+    part = Part(f"{name}{what}", took_s, limit.value, "s", at_s, (limit, *rests_on), uncertainty)
+    return _Time(name, part, reached_s is not None)

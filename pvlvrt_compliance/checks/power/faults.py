@@ -3,7 +3,7 @@
 from itertools import groupby
 
 from pvlvrt_compliance.disturbance.model import Stretch
-from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
+from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, after_trip
 from pvlvrt_compliance.measure.windows import Span, standard_windows
 
 
@@ -50,8 +50,9 @@ def require_clearing(fault: Stretch, evidence: Evidence) -> None:
     NotApplicable
         When the inverter trips before the fault is cleared.
     """
-    if is_cut_by_trip(fault, evidence):
-        raise NotApplicable(f"not judged after the trip at {evidence.known_opening_s:.3f} s")
+    opened_s = evidence.known_opening_s
+    if opened_s is not None and is_cut_by_trip(fault, evidence):
+        raise NotApplicable(after_trip(opened_s))
 
 
 def next_fault_s(fault: Stretch, evidence: Evidence) -> float | None:

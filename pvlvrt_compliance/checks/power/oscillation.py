@@ -87,7 +87,8 @@ class OscillationCheck(StretchCheck):
         def bands(stretch: Stretch) -> Iterator[Band]:
             settled = _settled(requirement, evidence, stretch)
             for name, quantity, x in zip("PQ", (ACTIVE_POWER, REACTIVE_POWER), evidence.half_cycle_kva, strict=True):
-                yield about_the_line(KIND, quantity, f"swing of {name}", evidence, settled, x, room)
+                what = f"swing of {name}"
+                yield about_the_line(KIND, quantity, what, evidence, settled, x, room, half_cycle=True)
 
         return of_each(self.stretches(requirement, evidence), bands)
 

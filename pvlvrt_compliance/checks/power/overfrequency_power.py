@@ -10,8 +10,8 @@ from pvlvrt_compliance.evidence.excursions import excursions
 from pvlvrt_compliance.evidence.frequency import frequency_hz
 from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.profile.requirements import OverfrequencyPower
-from pvlvrt_compliance.results import Band, Verdict
-from pvlvrt_compliance.results.band import ACTIVE_POWER
+from pvlvrt_compliance.results import Characteristic, Drawn, Verdict
+from pvlvrt_compliance.results.band import ACTIVE_POWER, FREQUENCY
 from pvlvrt_compliance.waveforms.container import Samples
 
 KIND = "overfrequency_power"
@@ -64,12 +64,13 @@ class OverfrequencyPowerCheck(Check):
             uncertainty=evidence.power_uncertainty_kva,
         )
 
-    def limits(self, requirement: OverfrequencyPower, evidence: Evidence) -> tuple[Band, ...]:
-        """What the droop asks for, less and more the tolerance, wherever P has to follow it."""
+    def limits(self, requirement: OverfrequencyPower, evidence: Evidence) -> tuple[Drawn, ...]:
+        """What the droop asks for, less and more the tolerance: wherever P has to follow it, and over the frequency."""
         frequency = frequency_hz(evidence)
         wanted_kw = demanded_kw(requirement, evidence, frequency)
         room_kw = requirement.tolerance_fraction.value * evidence.nominal.apparent_power_kva
-        return tuple(
+        active = _active(requirement, evidence, frequency)
+        over_time = (
             along(
                 KIND,
                 ACTIVE_POWER,
@@ -78,8 +79,26 @@ class OverfrequencyPowerCheck(Check):
                 lower=wanted_kw[part] - room_kw,
                 upper=wanted_kw[part] + room_kw,
             )
-            for part in stretches_of(_active(requirement, evidence, frequency))
+            for part in stretches_of(active)
         )
+        return (*over_time, _droop(requirement, evidence, float(frequency[active].max()), room_kw))
+
+
+def _droop(requirement: OverfrequencyPower, evidence: Evidence, highest_hz: float, room_kw: float) -> Characteristic:
+    """The droop from its threshold up to the highest frequency that P had to follow."""
+    threshold_hz = requirement.threshold_hz.value
+    none_left_hz = threshold_hz + requirement.droop_fraction.value * evidence.nominal.frequency_hz
+    x = np.unique(np.minimum((threshold_hz, none_left_hz, highest_hz), highest_hz))
+    wanted_kw = demanded_kw(requirement, evidence, x)
+    return Characteristic(
+        check=KIND,
+        over=FREQUENCY,
+        quantity=ACTIVE_POWER,
+        name="P by the droop",
+        x=tuple(x.tolist()),
+        lower=tuple((wanted_kw - room_kw).tolist()),
+        upper=tuple((wanted_kw + room_kw).tolist()),
+    )
 
 
 def demanded_kw(requirement: OverfrequencyPower, evidence: Evidence, frequency: Samples) -> Samples:

@@ -1,6 +1,7 @@
 """The current is free of harmonics in steady operation."""
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.measure.groups import harmonic_subgroups, spectrum, thd, trd
 from pvlvrt_compliance.profile.requirements import Harmonics
 from pvlvrt_compliance.profile.tables import HarmonicLimits
-from pvlvrt_compliance.results import Verdict
+from pvlvrt_compliance.results import Spectrum, SpectrumBar, Verdict
 from pvlvrt_compliance.waveforms.container import Samples
 
 KIND = "harmonics"
@@ -41,41 +42,72 @@ class HarmonicsCheck(Check):
             When the window before the disturbance is shorter than that, a current cannot be measured, or there is no
             fundamental.
         """
-        return judged_by_parts(
-            KIND,
-            requirement,
-            [part for window in steady_currents(evidence) for part in _parts(requirement, evidence, window)],
+        parts = [
+            _part(component, window)
+            for window in steady_currents(evidence)
+            for component in _components(requirement, evidence, window)
+        ]
+        return judged_by_parts(KIND, requirement, parts)
+
+    def limits(self, requirement: Harmonics, evidence: Evidence) -> tuple[Spectrum, ...]:
+        """All components of each window, in the phase with the most, with their limits."""
+        return tuple(
+            Spectrum(check=KIND, start_s=window.start_s, end_s=window.end_s, bars=tuple(map(_bar, found)))
+            for window in steady_currents(evidence)
+            if (found := list(_components(requirement, evidence, window)))
         )
 
 
-def _parts(requirement: Harmonics, evidence: Evidence, window: SteadyWindow) -> Iterator[Part]:
-    found = spectrum(window.current, window.dt_s, window.frequency_hz, evidence.nominal.frequency_hz)
-    subgroups = harmonic_subgroups(found)
+class _Component(NamedTuple):
+    """An order, or a total of several, in the phase that has the most of it."""
+
+    order: int | None
+    total: str  # of a total: its abbreviation
+    what: str
+    phase: str
+    percent: float
+    limit_percent: float
+    rests_on: Marked
+
+
+def _part(component: _Component, window: SteadyWindow) -> Part:
+    what = f"{component.what}, over {window.start_s:.3f} s to {window.end_s:.3f} s"
+    rests_on = (component.rests_on,)
+    return Part(what, component.percent, component.limit_percent, "%", window.start_s, rests_on)
+
+
+def _bar(of: _Component) -> SpectrumBar:
+    return SpectrumBar(order=of.order, name=of.total, phase=of.phase, measured=of.percent, limit=of.limit_percent)
+
+
+def _components(requirement: Harmonics, evidence: Evidence, window: SteadyWindow) -> Iterator[_Component]:
+    subgroups = evidence.once((KIND, window.start_s), lambda: _subgroups(evidence, window))
     if requirement.orders is not None:
-        yield from _orders(requirement.orders, subgroups, window)
+        yield from _orders(requirement.orders, subgroups)
     if requirement.total_percent is not None:
         total = trd(window.current, window.dt_s, window.frequency_hz, rated_rms=1.0)
-        yield _worst_phase("total rated-current distortion", total, requirement.total_percent, window)
+        yield _total("TRD", "total rated-current distortion", total, requirement.total_percent)
     if requirement.thd_percent is not None:
         if subgroups[:, 1].min() < evidence.thresholds.least_fundamental_fraction.value:
             raise MeasurementError("there is no fundamental current to state a distortion of")
-        yield _worst_phase("total harmonic distortion", thd(subgroups), requirement.thd_percent, window)
+        yield _total("THD", "total harmonic distortion", thd(subgroups), requirement.thd_percent)
 
 
-def _orders(limits: HarmonicLimits, subgroups: Samples, window: SteadyWindow) -> Iterator[Part]:
+def _subgroups(evidence: Evidence, window: SteadyWindow) -> Samples:
+    return harmonic_subgroups(spectrum(window.current, window.dt_s, window.frequency_hz, evidence.nominal.frequency_hz))
+
+
+def _orders(limits: HarmonicLimits, subgroups: Samples) -> Iterator[_Component]:
     for order in range(2, subgroups.shape[-1]):
         row = limits.row_for(order)
         if row is not None:
-            phase = int(subgroups[:, order].argmax())
-            what = f"harmonic {order} of the current in phase {'abc'[phase]}, of the rated current"
-            yield _part(what, subgroups[phase, order], row.limit_percent, window, limits.mark_of(row))
+            at = int(subgroups[:, order].argmax())
+            phase, percent = "abc"[at], 100 * float(subgroups[at, order])
+            what = f"harmonic {order} of the current in phase {phase}, of the rated current"
+            yield _Component(order, "", what, phase, percent, row.limit_percent, limits.mark_of(row))
 
 
-def _worst_phase(name: str, fractions: Samples, limit: Number, window: SteadyWindow) -> Part:
-    phase = int(np.argmax(fractions))
-    return _part(f"{name} in phase {'abc'[phase]}", fractions[phase], limit.value, window, limit)
-
-
-def _part(what: str, fraction: float, limit_percent: float, window: SteadyWindow, rests_on: Marked) -> Part:
-    when = f"over {window.start_s:.3f} s to {window.end_s:.3f} s"
-    return Part(f"{what}, {when}", 100 * float(fraction), limit_percent, "%", window.start_s, (rests_on,))
+def _total(abbreviation: str, name: str, fractions: Samples, limit: Number) -> _Component:
+    at = int(np.argmax(fractions))
+    phase, percent = "abc"[at], 100 * float(fractions[at])
+    return _Component(None, abbreviation, f"{name} in phase {phase}", phase, percent, limit.value, limit)

@@ -48,7 +48,7 @@ class RepeatedRuns(Requirement):
 
     kinds = ("repeated_runs",)
 
-    consecutive: Positive
+    consecutive: Positive = Field(description="runs of a row that are ridden through one after the other")
     consecutive_after_trip: Positive | None = Field(
         default=None, description="further runs that must all be ridden through when one tripped; none: it has failed"
     )
@@ -80,5 +80,5 @@ class PhaseJumpRideThrough(Requirement):
 
     all_phases_deg: Positive = Field(description="largest jump of the positive-sequence angle")
     single_phase_deg: Positive | None = Field(default=None, description="largest jump of one phase")
-    recovery_fraction: Fraction
-    recovery_time_s: Positive
+    recovery_fraction: Fraction = Field(description="of the active power before the jump")
+    recovery_time_s: Positive = Field(description="from the last jump")

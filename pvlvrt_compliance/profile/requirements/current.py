@@ -21,10 +21,10 @@ class CurrentLimit(Requirement):
 
     kinds = ("current_limit",)
 
-    limit_pu: Positive
-    tolerance_pu: NotNegative
+    limit_pu: Positive = Field(description="largest amplitude of a phase's fundamental, once settled")
+    tolerance_pu: NotNegative = Field(description="on top of limit_pu")
     settling_s: NotNegative = Field(description="after each step of voltage, angle, frequency or strength of the grid")
-    peak_pu: Positive
+    peak_pu: Positive = Field(description="largest instantaneous current, always")
     stage_pu: Positive | None = Field(default=None, description="limit of the fundamental before it is settled")
     stage_from_cycles: Positive | None = Field(default=None, description="after each step, up to settling_s")
 
@@ -64,10 +64,10 @@ class ReactiveCurrent(Requirement):
 
     kinds = ("reactive_current", "negative_sequence_current")
 
-    k: Positive
+    k: Positive = Field(description="additional current for each pu of voltage")
     k_range: Numbers | None = Field(default=None, description="lowest and highest K that the code lets be set")
-    dead_band_pu: NotNegative
-    dead_band_mode: Choice[DeadBandMode]
+    dead_band_pu: NotNegative = Field(description="change of voltage up to which nothing is due")
+    dead_band_mode: Choice[DeadBandMode] = Field(description="how the dead band enters: none, shift or step")
     reference: Choice[Reference] = Field(description="what delta u counts from")
     tolerance_plus_pu: NotNegative = Field(description="more support than demanded")
     tolerance_minus_pu: NotNegative = Field(description="less support than demanded")
@@ -97,11 +97,11 @@ class SupportDynamics(Requirement):
 
     kinds = ("support_dynamics",)
 
-    activation_pu: Positive
-    activation_s: Positive
-    response_fraction: Fraction
-    response_s: Positive
-    settling_s: Positive
+    activation_pu: Positive = Field(description="move of the current that shows that it has begun")
+    activation_s: Positive = Field(description="longest time to that")
+    response_fraction: Fraction = Field(description="of the way to what is due")
+    response_s: Positive = Field(description="longest time to that")
+    settling_s: Positive = Field(description="longest time from activation to staying in the band")
     band_plus: Positive = Field(description="fraction of the final value")
     band_minus: Positive = Field(description="fraction of what is due")
     least_change_pu: Positive = Field(description="a change that is due by less is not timed")
@@ -114,7 +114,7 @@ class ReactiveRatio(Requirement):
 
     curve: RatioCurve
     within_s: NotNegative = Field(description="from each step")
-    tolerance: NotNegative
+    tolerance: NotNegative = Field(description="taken from the share that is asked for")
     least_current_pu: Positive = Field(description="total current where a share is due, at most what flowed before")
 
 

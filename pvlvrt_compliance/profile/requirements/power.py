@@ -110,7 +110,7 @@ class OverfrequencyPower(Requirement):
 
     kinds = ("overfrequency_power",)
 
-    threshold_hz: Positive
+    threshold_hz: Positive = Field(description="frequency above which the power falls")
     droop_fraction: Positive = Field(description="of nominal frequency, for the whole of the active power before")
     activation_s: Positive = Field(description="from crossing the threshold; P must follow from then on")
     tolerance_fraction: Positive = Field(description="of rated power")

@@ -12,7 +12,7 @@ class DcRipple(Requirement):
 
     kinds = ("dc_ripple",)
 
-    limit_percent: Positive
+    limit_percent: Positive = Field(description="amplitude, of the mean DC voltage")
 
 
 class Harmonics(Requirement):

@@ -1,6 +1,6 @@
 """The series of the evidence that the panels of a test show."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from itertools import cycle
 from typing import NamedTuple, get_args
 
@@ -12,7 +12,8 @@ from pvlvrt_compliance.evidence.frequency import frequency_hz
 from pvlvrt_compliance.evidence.no_load import no_load_series_pu
 from pvlvrt_compliance.evidence.voltages import voltage_quantity_pu
 from pvlvrt_compliance.profile.curves import VoltageQuantity
-from pvlvrt_compliance.report.drawing.colours import BLACK, FURTHER, GREY, PHASES, PURPLE
+from pvlvrt_compliance.report.drawing.colours import BLACK, BLUE, FURTHER, GREY, PHASES, PURPLE
+from pvlvrt_compliance.results import Band
 from pvlvrt_compliance.results import band as of
 from pvlvrt_compliance.waveforms.container import Samples
 
@@ -20,6 +21,7 @@ NO_LOAD = "V<sup>+</sup> without the inverter's current"
 
 _SAME_PU = 0.005  # what a V+ of the source may differ by from that at the terminals before it is drawn, too
 _FINE_PU, _FINE_POWER, _FINE_V, _FINE_HZ = 2e-4, 2e-4, 0.05, 5e-4  # what nobody sees; of a power a part of the rated
+_FINE_RIPPLE_V = 1e-3
 
 
 class Shown(NamedTuple):
@@ -30,37 +32,54 @@ class Shown(NamedTuple):
     series: Callable[[], Samples]  # shape (n,)
     fine: float
     is_faint: bool = False
+    of_a_phase: bool = False
+
+    @property
+    def is_wave(self) -> bool:
+        """Whether it is instantaneous."""
+        return self.is_faint or self.of_a_phase
 
 
 class Group(NamedTuple):
     """The series of one panel, and the quantities whose limits stand there."""
 
+    key: str
     title: str
     unit: str
     height: float
     shown: Sequence[Shown]
     quantities: Sequence[str]
     from_zero: bool = False
+    of_phases: bool = False  # whether it shows instantaneous values of the phases
+    bands: Sequence[Band] | None = None  # the limits as this panel shows them; none: those of the quantities
 
 
-def groups_of(evidence: Evidence, limited: Collection[str]) -> list[Group]:
-    """Everything that a test is drawn by; parts of it only where it is limited (names of `Band`) or moves."""
+def groups_of(evidence: Evidence, bands: Sequence[Band]) -> list[Group]:
+    """Everything that a test is drawn by; parts of it only where it is limited, by one of the bands, or moves."""
+    limited = {band.quantity for band in bands}
     groups = [
-        Group("Phase-to-neutral voltages", "pu", 1.0, _phases("u", lambda: evidence.voltage_pu), ()),
+        Group(
+            "voltages",
+            "Phase-to-neutral voltages",
+            "pu",
+            1.0,
+            _phases("u", lambda: evidence.voltage_pu),
+            (),
+            of_phases=True,
+        ),
         _voltages(evidence, limited),
         _currents(evidence),
-        _powers(evidence),
-        Group("DC voltage", "V", 0.8, [_dc_voltage(evidence)], (of.DC_VOLTAGE,)),
     ]
     if evidence.disturbance.frequency_moves or of.FREQUENCY in limited:
-        groups.insert(2, Group("Frequency", "Hz", 0.8, [_frequency(evidence)], (of.FREQUENCY,)))
+        groups.insert(2, Group("frequency", "Frequency", "Hz", 0.8, [_frequency(evidence)], (of.FREQUENCY,)))
     if shown := [shown for name, shown in _reactive(evidence).items() if name in limited]:
         quantities = (of.REACTIVE_CURRENT, of.REACTIVE_CURRENT_NEGATIVE)
-        groups.insert(-2, Group("Reactive currents of the sequences, one cycle", "pu", 1.0, shown, quantities))
+        title = "Reactive currents of the sequences, one cycle"
+        groups.append(Group("reactive_current", title, "pu", 1.0, shown, quantities))
     if of.REACTIVE_SHARE in limited:
         share = Shown("share", BLACK, lambda: evidence.reactive_share, 1e-3)
-        groups.insert(-2, Group("Share of the reactive current", "", 0.8, [share], (of.REACTIVE_SHARE,)))
-    return groups
+        groups.append(Group("share", "Share of the reactive current", "", 0.8, [share], (of.REACTIVE_SHARE,)))
+    return [*groups, *_powers(evidence, bands), *_dc_voltage(evidence, bands)]
 
 
 def known(shown: Shown) -> Samples | None:
@@ -74,7 +93,7 @@ def known(shown: Shown) -> Samples | None:
 
 def _phases(kind: str, series: Callable[[], Samples]) -> list[Shown]:
     return [
-        Shown(f"{kind}<sub>{name}</sub>", colour, lambda k=k: series()[k], _FINE_PU)  # type: ignore[misc]
+        Shown(f"{kind}<sub>{name}</sub>", colour, lambda k=k: series()[k], _FINE_PU, of_a_phase=True)  # type: ignore[misc]
         for k, (name, colour) in enumerate(PHASES.items())
     ]
 
@@ -91,7 +110,7 @@ def _voltages(evidence: Evidence, limited: Collection[str]) -> Group:
     ]
     title = "One-cycle voltages" if judged else "Sequence voltages, one cycle"
     quantities = (of.VOLTAGE_POSITIVE, of.VOLTAGE_NEGATIVE, *map(of.voltage_band, judged))
-    return Group(title, "pu", 1.0, shown, quantities, from_zero=True)
+    return Group("sequences", title, "pu", 1.0, shown, quantities, from_zero=True)
 
 
 def _judged(evidence: Evidence, quantity: VoltageQuantity, colour: str) -> Shown:
@@ -114,7 +133,7 @@ def _currents(evidence: Evidence) -> Group:
     """Instantaneous, and the largest of the three fundamental amplitudes, which is what limits are held against."""
     largest = Shown("largest fundamental", BLACK, lambda: np.max(evidence.current_phase_pu, axis=0), _FINE_PU)
     shown = [*_phases("i", lambda: evidence.current_pu), largest]
-    return Group("Phase currents", "pu", 1.2, shown, (of.CURRENT,))
+    return Group("currents", "Phase currents", "pu", 1.2, shown, (of.CURRENT,), of_phases=True)
 
 
 def _reactive(evidence: Evidence) -> dict[str, Shown]:
@@ -126,17 +145,63 @@ def _reactive(evidence: Evidence) -> dict[str, Shown]:
     }
 
 
-def _powers(evidence: Evidence) -> Group:
-    """Instantaneous, and their means over a cycle, which are judged."""
+def _powers(evidence: Evidence, bands: Sequence[Band]) -> Iterator[Group]:
+    """P and Q: instantaneous, and their means over a cycle and, where those are judged, over half a cycle."""
     fine = _FINE_POWER * evidence.nominal.apparent_power_kva
-    shown = [
-        Shown("p(t)", BLACK, lambda: evidence.instantaneous_kva.p, fine, is_faint=True),
-        Shown("q(t)", PURPLE, lambda: evidence.instantaneous_kva.q, fine, is_faint=True),
-        Shown("P", BLACK, lambda: evidence.active_power_kw, fine),
-        Shown("Q", PURPLE, lambda: evidence.reactive_power_kvar, fine),
-    ]
-    return Group("Active and reactive power", "kW, kvar", 1.7, shown, (of.ACTIVE_POWER, of.REACTIVE_POWER))
+    halves = {band.quantity for band in bands if band.half_cycle}
+    instantaneous = (lambda: evidence.instantaneous_kva.p, lambda: evidence.instantaneous_kva.q)
+    half_cycle = (lambda: evidence.half_cycle_kva.p, lambda: evidence.half_cycle_kva.q)
+    means = (lambda: evidence.active_power_kw, lambda: evidence.reactive_power_kvar)
+    for k, (key, title, unit, name, quantity) in enumerate(_POWERS):
+        shown = [
+            Shown(f"{name.lower()}(t)", GREY, instantaneous[k], fine, is_faint=True),
+            *([Shown(f"{name}, half cycle", BLUE, half_cycle[k], fine)] if quantity in halves else []),
+            Shown(name, BLACK, means[k], fine),
+        ]
+        yield Group(key, title, unit, 1.2, shown, (quantity,))
 
 
-def _dc_voltage(evidence: Evidence) -> Shown:
-    return Shown("v<sub>DC</sub>", BLACK, lambda: evidence.dc_voltage_v, _FINE_V)
+_POWERS = (
+    ("active_power", "Active power", "kW", "P", of.ACTIVE_POWER),
+    ("reactive_power", "Reactive power", "kvar", "Q", of.REACTIVE_POWER),
+)
+
+
+def _dc_voltage(evidence: Evidence, bands: Sequence[Band]) -> Iterator[Group]:
+    """The DC voltage, and, where its ripple is judged, what is left of it about the lines that the limits lie about."""
+    shown = Shown("v<sub>DC</sub>", BLACK, lambda: evidence.dc_voltage_v, _FINE_V)
+    limits = [band for band in bands if band.quantity == of.DC_VOLTAGE]
+    ripple = [band for band in limits if band.about_its_line]
+    yield Group(
+        "dc_voltage",
+        "DC voltage",
+        "V",
+        0.8,
+        [shown],
+        (of.DC_VOLTAGE,) if len(ripple) < len(limits) else (),
+        bands=[band for band in limits if not band.about_its_line],
+    )
+    if ripple:
+        rest = Shown("v<sub>DC</sub> less its line", BLACK, lambda: _about_lines(evidence, ripple), _FINE_RIPPLE_V)
+        bare = [_without_line(band) for band in ripple]
+        yield Group("dc_ripple", "Ripple of the DC voltage", "V", 0.8, [rest], (of.DC_VOLTAGE,), bands=bare)
+
+
+def _about_lines(evidence: Evidence, bands: Sequence[Band]) -> Samples:
+    """The DC voltage less the line midway between the limits of each band, known nowhere else, shape (n,)."""
+    rest = np.full(len(evidence.t_s), np.nan)
+    for band in bands:
+        inside = evidence.between(band.t_s[0], band.t_s[-1])
+        rest[inside] = evidence.dc_voltage_v[inside] - np.interp(evidence.t_s[inside], band.t_s, _middle(band))
+    return rest
+
+
+def _middle(band: Band) -> Samples:
+    middle: Samples = (np.asarray(band.lower) + np.asarray(band.upper)) / 2
+    return middle
+
+
+def _without_line(band: Band) -> Band:
+    middle = _middle(band)
+    lower, upper = (tuple((np.asarray(edge) - middle).tolist()) for edge in (band.lower, band.upper))
+    return band.model_copy(update={"lower": lower, "upper": upper})

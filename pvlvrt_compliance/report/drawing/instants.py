@@ -4,12 +4,9 @@ from collections.abc import Callable, Iterator
 from typing import Literal
 
 from pvlvrt_compliance.disturbance.model import Step
-from pvlvrt_compliance.report.drawing.colours import BLACK, BLUE, GREY, VERMILION
-from pvlvrt_compliance.report.drawing.model import Mark, Point, Shade, Zoom
+from pvlvrt_compliance.report.drawing.colours import BLACK, BLUE, GREY, SHADE, VERMILION
+from pvlvrt_compliance.report.drawing.model import Mark, Named, Point, Shade, Text, Zoom
 from pvlvrt_compliance.results import TestResult
-
-ROWS = 4
-"""Rows of words above the first panel."""
 
 _NEAR_AN_END = 0.25  # of the record: words as long as they are here would leave the drawing
 _BEFORE_S, _AFTER_S = 0.02, 0.08  # what the zoom on an instant shows
@@ -24,14 +21,17 @@ def steps_of(result: TestResult) -> tuple[Step, ...]:
 
 
 def shades_of(result: TestResult, span: Point) -> tuple[Shade, ...]:
-    """What is no normal voltage, in grey, and the measurement window, in blue."""
-    during = result.measurements.during
-    window = [Shade(during.start_s, during.end_s, BLUE, 0.10)] if during else []
-    return (*(Shade(*part, "#000000", 0.045) for part in _abnormal(result, span[1])), *window)
+    """What is no normal voltage, in grey, and the measurement windows, in blue."""
+    measured = result.measurements
+    windows = [window for window in (measured.before, measured.during, measured.after) if window]
+    return (
+        *(Shade(*part, SHADE, 0.045) for part in _abnormal(result, span[1])),
+        *(Shade(window.start_s, window.end_s, BLUE, 0.10) for window in windows),
+    )
 
 
 def marks_of(result: TestResult, span: Point, opened_s: float | None) -> tuple[Mark, ...]:
-    """A line at each step and at the opening of the breaker; words above the first panel, none of which leaves it."""
+    """A line at each step and at the opening of the breaker; words above the panels, none of which leaves them."""
     start_s, length_s = span[0], span[1] - span[0]
 
     def place(at_s: float, usual: Anchor) -> Anchor:
@@ -77,20 +77,26 @@ def _words(result: TestResult, place: Place) -> Iterator[Mark]:
         yield _named(steps[-1].at_s, _step_in_words(steps[-1], "end"), place(steps[-1].at_s, "left"), row=row)
     if during:
         middle_s = (during.start_s + during.end_s) / 2
-        yield _named(middle_s, "window “during”", place(middle_s, "center"), row=3, colour=BLUE)
+        yield _named(middle_s, Text("mark.during", {}), place(middle_s, "center"), row=3, colour=BLUE)
 
 
-def _step_in_words(step: Step, name: str) -> str:
-    return f"{name} {step.at_s:.3f} s ({', '.join(step.moved)})"
+def _step_in_words(step: Step, name: str) -> Text:
+    moved = tuple(Text(f"mark.moved.{what}", {}) for what in step.moved)
+    return Text(f"mark.{name}", {"at": f"{step.at_s:.3f}", "moved": moved})
 
 
 def _opening(result: TestResult, opened_s: float | None, place: Place) -> Iterator[Mark]:
     if opened_s is not None:
-        by = f": {result.trip_cause}" if result.trip_cause else ""
-        words = f"breaker opens {opened_s:.3f} s{by}"
+        at = {"at": f"{opened_s:.3f}"}
+        cause = result.trip_cause
+        words = (
+            Text("mark.opening_by", {**at, "cause": Named("mark.cause", cause)})
+            if cause
+            else Text("mark.opening", {**at})
+        )
         named = _named(opened_s, words, place(opened_s, "left"), row=4, colour=VERMILION)
         yield named._replace(colour=VERMILION, dash="solid")
 
 
-def _named(at_s: float, words: str, anchor: Anchor, row: int, colour: str = BLACK) -> Mark:
+def _named(at_s: float, words: Text, anchor: Anchor, row: int, colour: str = BLACK) -> Mark:
     return Mark(at_s, colour, None, words, row, anchor, colour)

@@ -2,12 +2,17 @@
 
 from collections.abc import Sequence
 
-from pvlvrt_compliance.report.drawing.colours import BLACK, BLUE, VERMILION, of_mode
+from pvlvrt_compliance.report.drawing.colours import BLACK, BLUE, PURPLE, VERMILION, of_mode
 from pvlvrt_compliance.report.drawing.model import Area, Dash, Line, Run, Strip
 from pvlvrt_compliance.results import Band
-from pvlvrt_compliance.results.band import ACTIVE_POWER, CURRENT
+from pvlvrt_compliance.results.band import ACTIVE_POWER, CURRENT, REACTIVE_CURRENT, REACTIVE_CURRENT_NEGATIVE
 
-_COLOURS = {CURRENT: BLACK, ACTIVE_POWER: BLUE}
+_COLOURS = {
+    CURRENT: BLACK,
+    ACTIVE_POWER: BLUE,
+    REACTIVE_CURRENT: BLACK,  # as their curves
+    REACTIVE_CURRENT_NEGATIVE: PURPLE,
+}
 _DASHES: tuple[Dash, ...] = ("dash", "dot", "dashdot", "longdash")
 _WIDTH, _WIDENED_WIDTH = 1.5, 0.8
 _GAP = float("nan")

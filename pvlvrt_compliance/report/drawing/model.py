@@ -10,8 +10,13 @@ if TYPE_CHECKING:  # what is drawn of a profile needs no numpy
     import numpy as np
     from numpy.typing import NDArray
 
+    from pvlvrt_compliance.report.language import Texts
+
 Scale = Literal["linear", "log"]
 Dash = Literal["solid", "dash", "dot", "dashdot", "longdash"]
+Over = Literal["time", "other"]
+"""What the horizontal axis is of: the time of the record, shared with other panels, or something of its own."""
+
 Point = tuple[float, float]
 Points = tuple[Point, ...]
 
@@ -27,7 +32,43 @@ STROKES_PX: dict[Dash, tuple[float, ...]] = {
 """Lengths drawn and left out by turns, as plotly.js has them for lines up to 3 px wide."""
 
 _BELOW, _ABOVE = 0.04, 0.06  # of the height, left free
+_LARGEST = 1e300  # of a number that an axis can show; a run that got out of hand may hold any
 _MARKUP = re.compile("</?su[bp]>")
+
+
+class Text(NamedTuple):
+    """A text of the catalogues, by its key, and the values for its places."""
+
+    key: str
+    values: "dict[str, Said]"
+
+    def said(self, texts: "Texts") -> str:
+        """The text in a language."""
+        return texts(self.key, **{name: _said(value, texts) for name, value in self.values.items()})
+
+
+class Named(NamedTuple):
+    """A name of the data, which a table of the catalogues has words for."""
+
+    table: str
+    name: str
+
+    def __str__(self) -> str:
+        return self.name.replace("_", " ")
+
+
+Said = str | float | Text | Named | tuple[Text, ...]
+"""A value of a text: as it is, a name, or itself a text; several are listed."""
+
+
+def _said(value: Said, texts: "Texts") -> str | float:
+    if isinstance(value, Text):
+        return value.said(texts)
+    if isinstance(value, Named):
+        return texts.named(*value)
+    if isinstance(value, tuple):
+        return ", ".join(text.said(texts) for text in value)
+    return value
 
 
 class OnGrid(NamedTuple):
@@ -72,6 +113,7 @@ class Line(NamedTuple):
     group: str = ""
     in_legend: bool = True
     told: bool = False  # whether its values are told under the pointer
+    swings_s: float = 0.0  # the period of a wave, 0 of what is none: where its periods are close it is drawn fainter
 
 
 class Area(NamedTuple):
@@ -86,6 +128,28 @@ class Area(NamedTuple):
     in_legend: bool = True
 
 
+class Bars(NamedTuple):
+    """Bars from zero up to (or down to) a height each, of one look."""
+
+    name: str
+    at: tuple[float, ...]  # middles, shape (n,)
+    heights: tuple[float, ...]  # shape (n,); what is not finite has no bar
+    width: float = 0.8  # of each, in units of the horizontal axis
+    colour: str = BLACK
+    opacity: float = 1.0
+    in_legend: bool = True
+
+
+class Spot(NamedTuple):
+    """A point that is pointed out, with words."""
+
+    x: float
+    y: float
+    words: Text
+    colour: str = BLACK
+    is_broken: bool = False  # whether a limit is not met there
+
+
 class Axis(NamedTuple):
     """One axis: what it is of with its unit, and from where to where; None: as far as what is drawn."""
 
@@ -96,7 +160,11 @@ class Axis(NamedTuple):
 
 
 class Panel(NamedTuple):
-    """One set of axes, ``height`` relative to the others; areas lie below the lines."""
+    """One set of axes, ``height`` relative to the others; areas and bars lie below the lines, spots above.
+
+    Title, labels of the axes and names of curves are English; of a panel with a ``key`` a report has its own words for
+    them (tables ``figure``, ``axis`` and ``curve`` of the catalogues).
+    """
 
     title: str
     x: Axis
@@ -104,6 +172,12 @@ class Panel(NamedTuple):
     lines: tuple[Line, ...]
     areas: tuple[Area, ...] = ()
     height: float = 1.0
+    key: str = ""
+    says: Text | None = None  # what is to be seen
+    over: Over = "time"
+    equal: bool = False  # whether a unit is as long on both axes
+    bars: tuple[Bars, ...] = ()
+    spots: tuple[Spot, ...] = ()
 
 
 class Mark(NamedTuple):
@@ -112,7 +186,7 @@ class Mark(NamedTuple):
     at_s: float
     colour: str
     dash: Dash | None = None  # none: words alone, without a line
-    words: str = ""
+    words: Text | None = None
     row: int = 1
     anchor: Literal["left", "center", "right"] = "left"
     words_colour: str = BLACK
@@ -136,7 +210,7 @@ class Zoom(NamedTuple):
 
 
 class Drawing(NamedTuple):
-    """Panels over one axis of time, and what is said of instants across all of them."""
+    """Panels, and what is said of instants across all of them that are over time; they share its axis."""
 
     panels: tuple[Panel, ...]
     span: Point
@@ -154,25 +228,35 @@ def span_of(panel: Panel) -> tuple[Point, Point]:
     strips = [strip for area in panel.areas for strip in area.strips]
     x, y = panel.x.span, panel.y.span
     if x is None:
-        places = [*(run.x for run in runs), *(strip.x for strip in strips)]
+        places = [*(run.x for run in runs), *(strip.x for strip in strips), *map(_sides, panel.bars)]
         x = _span([v for part in places for v in values(part)], panel.x)
     if y is None:
         edges = [run.y for run in runs] + [edge for strip in strips for edge in (strip.lower, strip.upper)]
+        edges += [(0.0, *bars.heights) for bars in panel.bars]
         low, high = _span([v for edge in edges for v in edge], panel.y)
         y = (low - _BELOW * (high - low), high + _ABOVE * (high - low))
-    return x, y
+    return _apart(*x, panel.x.scale), _apart(*y, panel.y.scale)
+
+
+def _sides(bars: Bars) -> tuple[float, ...]:
+    """Where bars begin and end on the horizontal axis."""
+    return tuple(at + side * bars.width / 2 for at in bars.at for side in (-1, 1))
 
 
 def _span(numbers: Sequence[float], axis: Axis) -> Point:
     """The least and the largest number that the axis can show, apart from each other."""
-    known = [float(v) for v in numbers if math.isfinite(v) and (v > 0 or axis.scale == "linear")]
+    known = [float(v) for v in numbers if abs(v) < _LARGEST and (v > 0 or axis.scale == "linear")]
     known += [0.0] if axis.from_zero else []
     if not known:
         return (1.0, 10.0) if axis.scale == "log" else (0.0, 1.0)
-    low, high = min(known), max(known)
+    return _apart(min(known), max(known), axis.scale)
+
+
+def _apart(low: float, high: float, scale: Scale) -> Point:
+    """Two numbers, put apart where they are one: an axis goes from somewhere to somewhere else."""
     if high > low:
         return low, high
-    return (low / 2, high * 2) if axis.scale == "log" else (low - 0.5, high + 0.5)
+    return (low / 2, high * 2) if scale == "log" else (low - 0.5, high + 0.5)
 
 
 def broken_lines(run: Run) -> list[Points]:

@@ -1,18 +1,16 @@
 """Panels as one HTML page that needs no network and tells values under the pointer, by plotly.js."""
 
-import re
 from collections.abc import Sequence
 from html import escape
 from typing import Any
 
 from pvlvrt_compliance.report.drawing.model import Area, Axis, Line, Panel
 from pvlvrt_compliance.report.drawing.plotly_js import as_script, plotly_js
-from pvlvrt_compliance.report.drawing.plotly_traces import area_trace, line_trace
+from pvlvrt_compliance.report.drawing.plotly_traces import area_trace, line_trace, literal
 
 SUFFIX = ".html"
 _CONFIG = {"displaylogo": False, "responsive": True, "showSendToCloud": False, "plotlyServerURL": ""}
 _HEIGHT_PX = 520
-_ESCAPED_MARKUP = re.compile("&lt;(/?su[bp])>")
 
 
 def render(name: str, title: str, panels: Sequence[Panel]) -> str:
@@ -39,7 +37,7 @@ def _traces(panel: Panel) -> list[dict[str, Any]]:
 
 def _trace(of: Line | Area, trace: dict[str, Any]) -> dict[str, Any]:
     told = {"hoverinfo": "x+y+name", "type": "scatter", "mode": "lines"}
-    return {**trace, **told, "name": _literal(of.name), "legendgroup": of.group or None}
+    return {**trace, **told, "name": literal(of.name), "legendgroup": of.group or None}
 
 
 def _layout(panel: Panel) -> dict[str, Any]:
@@ -57,8 +55,3 @@ def _reach(axis: Axis) -> dict[str, Any]:
     if axis.span is not None:
         return {"range": list(axis.span)}
     return {"rangemode": "tozero" if axis.from_zero else "normal"}
-
-
-def _literal(text: str) -> str:
-    """A text in which plotly reads no markup but that of what is set high or low."""
-    return _ESCAPED_MARKUP.sub(r"<\1>", text.replace("&", "&amp;").replace("<", "&lt;"))

@@ -13,8 +13,8 @@ BUCKETS = 1500
 LEAST_A_CYCLE = 4.0
 """Buckets of a cycle from which on a sine is drawn as a curve: with fewer its points make another one of it."""
 
-_BUCKETS_OF_A_REPORT = 90_000
-_FEWEST_BUCKETS = 300
+_BUCKETS_OF_A_REPORT = 60_000
+_FEWEST_BUCKETS = 100
 _CLOSE_A_CYCLE = 5.0  # buckets of a cycle that is drawn as a curve between bands
 _CYCLES_BEFORE, _LEAST_CYCLES = 1.0, 2.0  # that are drawn as a curve before and after an instant, at least
 _SAME_SAMPLE = 1e-3  # of a step

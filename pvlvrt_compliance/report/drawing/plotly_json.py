@@ -1,85 +1,80 @@
-"""A drawing of a test as the plain dictionary that plotly.js draws, once `report.js` has unpacked its numbers."""
+"""A panel of a drawing as the plain dictionary that plotly.js draws, once `figures.js` has unpacked its numbers."""
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Mapping
+from typing import Any
 
-from pvlvrt_compliance.report.drawing.colours import BLACK, GREY
-from pvlvrt_compliance.report.drawing.instants import ROWS
-from pvlvrt_compliance.report.drawing.model import Drawing, Mark, Panel, Shade, plain
-from pvlvrt_compliance.report.drawing.plotly_traces import area_trace, line_trace, translucent
+from pvlvrt_compliance.report.drawing.canvas import UNITS_A_PX, canvas_of, spots_in
+from pvlvrt_compliance.report.drawing.colours import BLACK, GREY, GRID, PAPER
+from pvlvrt_compliance.report.drawing.frame import BOTTOM_PX, LEFT_PX, RIGHT_PX, ROW_PX, Frame, frame_of
+from pvlvrt_compliance.report.drawing.model import Area, Bars, Drawing, Line, Mark, Panel, Shade
+from pvlvrt_compliance.report.drawing.names import curve_name
+from pvlvrt_compliance.report.drawing.plotly_traces import (
+    area_trace,
+    bar_trace,
+    line_trace,
+    literal,
+    translucent,
+)
+from pvlvrt_compliance.report.drawing.spots import placed
+from pvlvrt_compliance.report.language import Texts
 
 Figure = dict[str, Any]
 
-_HEIGHT_PX = 150.0
-_ROW_PX = 15  # of words above the first panel
-_GAP_PX = 30.0
-_TOP_PX = 55.0 + ROWS * _ROW_PX
-_BOTTOM_PX = 44.0
-_LEGEND_ROW_PX = 17.0
-_LEAST_PLOT_PX = 606.0  # between the margins of the narrowest figure: on A4, and on a phone, which scrolls it
-_SYMBOL_PX, _CHARACTER_PX = 45.0, 6.0  # of a legend; a title is bold
-_BOLD_PX = 7.5
-_FONT = "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', Arial, sans-serif"
+_HALO = 0.8  # of the ground behind words that stand on curves
+
+FONT = "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', Arial, sans-serif"
 
 
-class _Place(NamedTuple):
-    """Where a panel stands: order from the top and its share of the height, from the bottom up; its legend."""
+def render(panel: Panel, drawing: Drawing, texts: Texts) -> Figure:
+    """Return a panel for plotly.js 3 or later.
 
-    order: int
-    bottom: float
-    top: float
-    legend: float
-
-    @property
-    def suffix(self) -> str:
-        return "" if self.order == 1 else str(self.order)
-
-
-def render(drawing: Drawing) -> Figure:
-    """Return the drawing for plotly.js 3 or later.
+    Parameters
+    ----------
+    panel : Panel
+    drawing : Drawing
+        What the panel is of; its marks and shades stand in every panel over time.
+    texts : Texts
+        The language of all words in it.
 
     Returns
     -------
     dict
-        ``{"data": [...], "layout": {...}}``, ready for JSON, all of it lines over one axis of time. A trace of samples
-        has ``packed`` in place of ``x`` and ``y``: see `plotly_traces`; `report.js` unpacks it.
+        ``{"data": [...], "layout": {...}}``, ready for JSON. A trace of samples has ``packed`` in place of ``x`` and
+        ``y``: see `plotly_traces`; `figures.js` unpacks it.
     """
-    panels = drawing.panels
-    plot_px = sum(panel.height * _HEIGHT_PX for panel in panels) + sum(_gap_px(panel) for panel in panels[1:])
-    placed = list(zip(panels, _places(panels, plot_px), strict=True))
+    marks, shades = (drawing.marks, drawing.shades) if panel.over == "time" else ((), ())
+    frame = frame_of(panel, drawing, texts)
     layout = {
         **_COMMON_LAYOUT,
-        "height": round(plot_px + _TOP_PX + _BOTTOM_PX),
-        "xaxis": _time_axis(drawing, anchor=f"y{placed[-1][1].suffix}" if placed else "y"),
-        "updatemenus": [_zoom_buttons(drawing)],
-        "shapes": [*map(_shade, drawing.shades), *(_vertical(mark) for mark in drawing.marks if mark.dash)],
+        "height": frame.height,
+        "margin": {"l": LEFT_PX, "r": RIGHT_PX, "t": frame.top, "b": frame.height - frame.floor},
+        "xaxis": _x_axis(panel, texts),
+        "yaxis": _y_axis(panel, texts),
+        "legend": {**_LEGEND, "y": -BOTTOM_PX / (frame.floor - frame.top)},
+        "shapes": [*map(_shade, shades), *(_vertical(mark) for mark in marks if mark.dash)],
         "annotations": [
-            *(_words(mark) for mark in drawing.marks if mark.words),
-            *(_title(panel, at) for panel, at in placed),
+            *(_words(mark, frame, texts) for mark in marks if mark.words),
+            *_pointed(panel, drawing, frame, texts),
         ],
     }
-    for panel, at in placed:
-        layout[f"yaxis{at.suffix}"] = _value_axis(panel, at)
-        layout[f"legend{at.suffix}"] = {**_LEGEND, "y": at.legend}
-    return {"data": [trace for panel, at in placed for trace in _traces(panel, at)], "layout": layout}
+    return {"data": list(_traces(panel, texts)), "layout": layout}
 
 
 _COMMON_LAYOUT: Mapping[str, Any] = {
-    "margin": {"l": 62, "r": 12, "t": _TOP_PX, "b": _BOTTOM_PX},
-    "font": {"family": _FONT, "size": 12, "color": BLACK},
-    "paper_bgcolor": "#ffffff",
-    "plot_bgcolor": "#ffffff",
+    "font": {"family": FONT, "size": 12, "color": BLACK},
+    "paper_bgcolor": PAPER,
+    "plot_bgcolor": PAPER,
+    "hoverlabel": {"bgcolor": PAPER, "bordercolor": GREY, "font": {"color": BLACK}},
+    "modebar": {"bgcolor": "rgba(0,0,0,0)", "color": GREY, "activecolor": BLACK},
     "hovermode": "x unified",
-    "hoversubplots": "axis",
     "dragmode": "zoom",
+    "showlegend": True,
 }
 
 _LEGEND: Mapping[str, Any] = {
     "orientation": "h",
-    "x": 1,
-    "xanchor": "right",
-    "yanchor": "bottom",
+    "x": 0,
+    "yanchor": "top",
     "font": {"size": 11},
     "bgcolor": "rgba(0,0,0,0)",
 }
@@ -88,90 +83,47 @@ _AXIS: Mapping[str, Any] = {
     "showline": True,
     "linecolor": GREY,
     "mirror": True,
-    "gridcolor": "#e4e4e4",
-    "zerolinecolor": "#bdbdbd",
+    "gridcolor": GRID,
+    "zerolinecolor": GREY,
+    "zerolinewidth": 0.5,
     "ticks": "outside",
     "ticklen": 4,
     "tickcolor": GREY,
 }
 
 
-def _places(panels: Sequence[Panel], plot_px: float) -> Iterator[_Place]:
-    top_px = plot_px
-    for order, panel in enumerate(panels, start=1):
-        if order > 1:
-            top_px -= _gap_px(panel)
-        legend_px = top_px + (_LEGEND_ROW_PX if order > 1 and _rows_above(panel) else 0.0)
-        bottom_px = top_px - panel.height * _HEIGHT_PX
-        yield _Place(order, max(bottom_px / plot_px, 0.0), top_px / plot_px, legend_px / plot_px)
-        top_px = bottom_px
+def _x_axis(panel: Panel, texts: Texts) -> Figure:
+    span = {} if panel.x.span is None else {"range": list(panel.x.span)}
+    title = {"text": texts.named("axis", panel.x.label), "standoff": 6}
+    of_time = {"hoverformat": ".4f", "zeroline": False} if panel.over == "time" else {}
+    square = {"constrain": "domain"} if panel.equal else {}
+    return {**_AXIS, "type": panel.x.scale, **span, "title": title, **of_time, **square}
 
 
-def _gap_px(panel: Panel) -> float:
-    return _GAP_PX + _rows_above(panel) * _LEGEND_ROW_PX
-
-
-def _rows_above(panel: Panel) -> int:
-    """Rows that the legend takes above the title of its panel; none where it fits beside it, however narrow."""
-    names = [area.name for area in panel.areas if area.in_legend]
-    names += [line.name for line in panel.lines if line.in_legend]
-    widths = [_SYMBOL_PX + _CHARACTER_PX * len(plain(name)) for name in names]
-    if _BOLD_PX * len(panel.title) + sum(widths) <= _LEAST_PLOT_PX:
-        return 0
-    if sum(widths) <= _LEAST_PLOT_PX:
-        return 1
-    in_a_row = max(int(_LEAST_PLOT_PX / max(widths)), 1)  # plotly sets several rows in columns of one width
-    return math.ceil(len(widths) / in_a_row)
-
-
-def _time_axis(drawing: Drawing, anchor: str) -> Figure:
-    label = drawing.panels[0].x.label if drawing.panels else ""
+def _y_axis(panel: Panel, texts: Texts) -> Figure:
+    span = {} if panel.y.span is None else {"range": list(panel.y.span)}
+    equal = {"scaleanchor": "x", "scaleratio": 1, "constrain": "domain"} if panel.equal else {}
     return {
         **_AXIS,
-        "mirror": "all",
-        "anchor": anchor,
-        "range": list(drawing.span),
-        "title": {"text": label, "standoff": 6},
-        "hoverformat": ".4f",
-        "zeroline": False,
-    }
-
-
-def _zoom_buttons(drawing: Drawing) -> Figure:
-    return {
-        "type": "buttons",
-        "direction": "right",
-        "showactive": False,
-        "x": 0,
-        "xanchor": "left",
-        "y": 1,
-        "yanchor": "bottom",
-        "pad": {"b": 9 + (ROWS + 1) * _ROW_PX, "t": 0, "l": 0, "r": 0},
-        "font": {"size": 11},
-        "buttons": [
-            {"label": zoom.name, "method": "relayout", "args": [{"xaxis.range": [zoom.begin_s, zoom.end_s]}]}
-            for zoom in drawing.zooms
-        ],
-    }
-
-
-def _value_axis(panel: Panel, at: _Place) -> Figure:
-    return {
-        **_AXIS,
-        "anchor": "x",
-        "domain": [at.bottom, at.top],
-        "title": {"text": panel.y.label, "standoff": 4},
+        "type": panel.y.scale,
+        **span,
+        "title": {"text": texts.named("axis", panel.y.label), "standoff": 4},
         "rangemode": "tozero" if panel.y.from_zero else "normal",
         "nticks": 6,
+        **equal,
     }
 
 
-def _traces(panel: Panel, at: _Place) -> Iterator[Figure]:
-    axes = {"yaxis": f"y{at.suffix}", "legend": f"legend{at.suffix}"}
+def _traces(panel: Panel, texts: Texts) -> Iterator[Figure]:
+    def named(item: Line | Area | Bars) -> str:
+        return literal(curve_name(item.name, texts))
+
     for area in panel.areas:
-        yield {**axes, **area_trace(area)}
+        yield {**area_trace(area), "name": named(area)}
+    for bars in panel.bars:
+        yield {**bar_trace(bars), "name": named(bars)}
     for line in panel.lines:
-        yield {**axes, **line_trace(line)}
+        yield {**line_trace(line), "name": named(line)}
 
 
 def _shade(shade: Shade) -> Figure:
@@ -202,31 +154,42 @@ def _vertical(mark: Mark) -> Figure:
     }
 
 
-def _words(mark: Mark) -> Figure:
+def _words(mark: Mark, frame: Frame, texts: Texts) -> Figure:
     return {
-        "text": mark.words,
+        "text": literal(mark.words.said(texts)) if mark.words else "",
         "x": mark.at_s,
         "xref": "x",
         "xanchor": mark.anchor,
         "y": 1,
         "yref": "paper",
         "yanchor": "bottom",
-        "yshift": 5 + _ROW_PX * mark.row,
+        "yshift": ROW_PX * frame.rows.index(mark.row),
         "showarrow": False,
         "font": {"size": 11, "color": mark.words_colour},
     }
 
 
-def _title(panel: Panel, at: _Place) -> Figure:
-    return {
-        "text": f"<b>{panel.title}</b>",
-        "x": 0,
-        "xref": "paper",
-        "xanchor": "left",
-        "y": at.top,
-        "yref": "paper",
-        "yanchor": "bottom",
-        "yshift": 2,
-        "showarrow": False,
-        "font": {"size": 12},
-    }
+def _pointed(panel: Panel, drawing: Drawing, frame: Frame, texts: Texts) -> Iterator[Figure]:
+    """A dot each, and words beside it."""
+    if not panel.spots:
+        return
+    canvas = canvas_of(panel, drawing, frame)
+    x, y = (values / UNITS_A_PX for values in spots_in(panel, canvas))
+    words = [spot.words.said(texts) for spot in panel.spots]
+    points = list(zip(x.tolist(), y.tolist(), strict=True))
+    places = placed(points, words, canvas.width / UNITS_A_PX, canvas.height / UNITS_A_PX)
+    for spot, text, place in zip(panel.spots, words, places, strict=True):
+        yield {
+            "text": literal(texts("mark.broken", check=text) if spot.is_broken else text),
+            "bgcolor": translucent(PAPER, _HALO),
+            "x": spot.x,
+            "y": spot.y,
+            "showarrow": True,
+            "arrowhead": 6,  # a dot
+            "arrowcolor": spot.colour,
+            "ax": 0,
+            "ay": place.below_px,
+            "xanchor": place.anchor,
+            "yanchor": "bottom" if place.below_px < 0 else "top",
+            "font": {"size": 11, "color": spot.colour},
+        }

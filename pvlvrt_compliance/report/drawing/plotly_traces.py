@@ -1,18 +1,21 @@
-"""Lines and areas as traces of plotly.js; where their numbers are packed, once `report.js` has unpacked them."""
+"""Lines and areas as traces of plotly.js; where their numbers are packed, once `figures.js` has unpacked them."""
 
 import base64
 import math
+import re
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pvlvrt_compliance.report.drawing.model import Area, Line, OnGrid, Places, values
+from pvlvrt_compliance.report.drawing.colours import EDGES_PX
+from pvlvrt_compliance.report.drawing.model import Area, Bars, Line, OnGrid, Places, values
 
 Trace = dict[str, Any]
 
-_EDGE_PX = 0.7
+_ESCAPED_MARKUP = re.compile("&lt;(/?su[bp])>")
+_EDGE_PX = 1.0
 _SAME_SAMPLE = 1e-3  # of a step
 
 
@@ -28,24 +31,49 @@ def line_trace(line: Line, *, packed: bool = True) -> Trace:
         "showlegend": line.in_legend,
         **told,
         **opacity,
+        **({"meta": line.swings_s} if line.swings_s else {}),
     }
 
 
 def area_trace(area: Area, *, packed: bool = True) -> Trace:
     """An area as a trace: one for all of its strips.
 
-    Samples are ``packed`` for `report.js`, or stand as ``x`` and ``y`` that plotly.js needs nothing more for.
+    Samples are ``packed`` for `figures.js`, or stand as ``x`` and ``y`` that plotly.js needs nothing more for.
     """
     return {
         "name": area.name,
         **_points([(strip.x, (strip.lower, strip.upper)) for strip in area.strips], packed),
         "fill": "toself",
         "fillcolor": translucent(area.colour, area.opacity),
-        "line": {"color": area.colour, "width": _EDGE_PX if area.edged else 0},
+        "line": {"color": area.colour, "width": _EDGE_PX if area.edged else 0, **_edge(area.colour)},
         "legendgroup": area.group or area.name,
         "showlegend": area.in_legend,
         "hoverinfo": "skip",
     }
+
+
+def bar_trace(bars: Bars) -> Trace:
+    """Bars as a trace."""
+    return {
+        "type": "bar",
+        "name": bars.name,
+        "x": list(bars.at),
+        "y": [height if math.isfinite(height) else None for height in bars.heights],
+        "width": bars.width,
+        "marker": {"color": bars.colour, "opacity": bars.opacity},
+        "showlegend": bars.in_legend,
+        "hovertemplate": "%{y:.4~g}",
+    }
+
+
+def _edge(colour: str) -> Trace:
+    lengths = ",".join(f"{length}px" for length in EDGES_PX.get(colour, ()))
+    return {"dash": lengths} if lengths else {}
+
+
+def literal(text: str) -> str:
+    """A text in which plotly reads no markup but that of what is set high or low."""
+    return _ESCAPED_MARKUP.sub(r"<\1>", text.replace("&", "&amp;").replace("<", "&lt;"))
 
 
 def translucent(colour: str, opacity: float) -> str:

@@ -1,6 +1,5 @@
-"""Panels as SVG, from a template, without any library that draws."""
+"""Panels as SVG: those of a profile from a template (`render`), one of a test as a compact picture (`figure`)."""
 
-import math
 import textwrap
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -14,14 +13,17 @@ from pvlvrt_compliance.report.drawing.model import (
     Panel,
     Point,
     Points,
-    Scale,
     Strip,
     broken_lines,
     outlines,
     plain,
     span_of,
 )
+from pvlvrt_compliance.report.drawing.still import figure
+from pvlvrt_compliance.report.drawing.ticks import share, ticks
 from pvlvrt_compliance.resources import resource_folder
+
+__all__ = ["SUFFIX", "figure", "render"]
 
 SUFFIX = ".svg"
 WIDTH, PANEL_HEIGHT, LEFT, RIGHT, TOP, BOTTOM, LEGEND_ROW = 760, 330, 66, 20, 34, 50, 17
@@ -83,14 +85,12 @@ class _Drawing:
     @property
     def x_ticks(self) -> list[_Tick]:
         """Places and texts along the horizontal axis."""
-        low, high = self.x_span
-        steps = _decades(low, high) if self.panel.x.scale == "log" else _round_steps(low, high)
-        return [_Tick(self._x(value), f"{value:g}") for value in steps]
+        return [_Tick(self._x(value), f"{value:g}") for value in ticks(self.x_span, self.panel.x.scale)]
 
     @property
     def y_ticks(self) -> list[_Tick]:
         """Places and texts along the vertical axis."""
-        return [_Tick(self._y(value), f"{value:g}") for value in _round_steps(*self.y_span)]
+        return [_Tick(self._y(value), f"{value:g}") for value in ticks(self.y_span)]
 
     def paths(self, line: Line) -> list[str]:
         """The runs of a line, each between its gaps, within the frame."""
@@ -114,30 +114,12 @@ class _Drawing:
         return tuple((self._x(x), self._y(y)) for x, y in points)
 
     def _x(self, value: float) -> float:
-        return self.left + (self.right - self.left) * _share(value, self.x_span, self.panel.x.scale)
+        return self.left + (self.right - self.left) * share(value, self.x_span, self.panel.x.scale)
 
     def _y(self, value: float) -> float:
-        return self.floor - PANEL_HEIGHT * _share(value, self.y_span, "linear")
+        return self.floor - PANEL_HEIGHT * share(value, self.y_span, "linear")
 
 
 def _path(points: Sequence[Point]) -> str:
     """Points as SVG has them."""
     return " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
-
-
-def _share(value: float, span: tuple[float, float], scale: Scale) -> float:
-    if scale == "log":
-        value, span = math.log(value), (math.log(span[0]), math.log(span[1]))
-    return (value - span[0]) / (span[1] - span[0])
-
-
-def _round_steps(low: float, high: float) -> list[float]:
-    """Round numbers within a span, about six."""
-    size = 10 ** math.floor(math.log10((high - low) / 6))
-    step = next(size * factor for factor in (1, 2, 5, 10, 20) if (high - low) / (size * factor) <= 8)
-    return [round(k * step, 9) for k in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)]
-
-
-def _decades(low: float, high: float) -> list[float]:
-    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
-    return [value for decade in decades for factor in (1, 2, 5) if low <= (value := factor * 10.0**decade) <= high]

@@ -12,6 +12,8 @@ from pvlvrt_compliance.waveforms.container import Samples
 
 Index = NDArray[np.int64]
 
+_SMOOTH = 5.0  # of the finest: what a curve may leave out that stands for a band
+
 
 def sketched(series: Samples, parts: Sequence[Part], fine: float) -> tuple[tuple[Run, ...], tuple[Strip, ...]]:
     """A series as curves and bands.
@@ -29,9 +31,18 @@ def sketched(series: Samples, parts: Sequence[Part], fine: float) -> tuple[tuple
         Points nearer than this to a straight line through their neighbours are left out.
     """
     finite = np.where(np.isfinite(series), series, np.nan)
-    runs = [run for part in parts if not part.is_band for run in _run(finite, part, fine)]
-    strips = [strip for part in parts if part.is_band for strip in _strip(finite, part, fine)]
+    banded = [part.is_band and not _is_smooth(_samples(finite, part), part, fine) for part in parts]
+    runs = [run for part, band in zip(parts, banded, strict=True) if not band for run in _run(finite, part, fine)]
+    strips = [strip for part, band in zip(parts, banded, strict=True) if band for strip in _strip(finite, part, fine)]
     return tuple(runs), tuple(strips)
+
+
+def _is_smooth(samples: Samples, part: Part, fine: float) -> bool:
+    """Whether a curve through a few points is all that a band would hold: there is no wave between them."""
+    index = picked(samples, part.half_bucket)
+    curve = np.interp(np.arange(len(samples)), index, samples[index])
+    off = np.abs(curve - samples)
+    return bool((np.isnan(samples) == np.isnan(curve)).all() and (off[np.isfinite(off)] <= _SMOOTH * fine).all())
 
 
 def _run(series: Samples, part: Part, fine: float) -> Iterator[Run]:

@@ -1,41 +1,57 @@
 """`report.html`: one file that needs no network."""
 
-from collections.abc import Mapping
-from functools import partial
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache, partial
+from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from pvlvrt_compliance.report import cursor_table, measurement_table
 from pvlvrt_compliance.report import format as spell
-from pvlvrt_compliance.report import measurement_table
-from pvlvrt_compliance.report.drawing import plotly_json
+from pvlvrt_compliance.report.document.coverage import coverage
+from pvlvrt_compliance.report.document.front import Front, front, margin_in_words
+from pvlvrt_compliance.report.document.matrix import matrices
+from pvlvrt_compliance.report.document.scenario import imposed_rows, scenario_words
+from pvlvrt_compliance.report.drawing import colours
+from pvlvrt_compliance.report.drawing.in_page import figures_of, plotly_packed
+from pvlvrt_compliance.report.drawing.looks import Looks
 from pvlvrt_compliance.report.drawing.model import Drawing
-from pvlvrt_compliance.report.drawing.plotly_js import as_script, plotly_js
+from pvlvrt_compliance.report.language import BASE, Texts
 from pvlvrt_compliance.report.provenance import provenance_groups
-from pvlvrt_compliance.report.verdicts import findings, is_verified, marginal, may_decide, name_of, on_the_run, verdicts
+from pvlvrt_compliance.report.verdicts import findings, is_verified, may_decide, name_of, verdicts
 from pvlvrt_compliance.resources import resource_folder
-from pvlvrt_compliance.results import Results, Status, TestResult, Verdict
+from pvlvrt_compliance.results import JUDGED, Results, Status, TestResult, Verdict
 from pvlvrt_compliance.results.files import REPORT
+from pvlvrt_compliance.results.verdict import UNSETTLED
 
 FILE = REPORT
 
+_WORST = 5  # margins that the first page shows at once; the others are folded below them
 
-class _SummaryTable(NamedTuple):
-    """Tests of one profile, each with its number on the page."""
+_INDENTATION = re.compile(r"\n\s+")
+_LEFT_TO_READERS = re.compile(r"</t[dhr]>\s*(?=</?t[bdhr])")
 
-    profile: str
-    check_names: list[str]
-    tests: list[tuple[int, TestResult]]
+_CHECK_COLUMNS = ("check", "measured", "limit", "margin", "uncertainty", "at", "verdict", "clause", "confidence")
+_CLAUSE_COLUMNS = ("clause", "about", "state", "judged", "margin", "where", "confidence")
+_IMPOSED_COLUMNS = (
+    *("window", "span", "asked_positive", "measured_positive", "difference"),
+    *("asked_negative", "measured_negative", "difference"),
+)
 
-    def count(self, status: Status) -> int:
-        """How many of the tests have this verdict."""
-        return sum(test.status is status for _, test in self.tests)
+
+class _Way(NamedTuple):
+    """From a failed test to the one before and the one after it; 0 where there is none."""
+
+    before: int
+    after: int
 
 
 def render(results: Results, drawings: Mapping[str, Drawing]) -> str:
-    """Return the report as one HTML document.
+    """Return the report as one HTML document, in the language of ``results.report``.
 
     Parameters
     ----------
@@ -45,35 +61,95 @@ def render(results: Results, drawings: Mapping[str, Drawing]) -> str:
 
     Raises
     ------
+    UsageError
+        When there is no such language.
     PvlvrtError
         When the templates or plotly's JavaScript are missing from the installation.
     """
     folder = resource_folder("reports")
+    texts = Texts(results.report.language)
     used = {test.key: drawings[test.key] for test in results.tests if test.key in drawings}
+    looks = Looks()
+    figures = {name: figures_of(drawing, texts, looks) for name, drawing in used.items()}
     return (
-        _environment(folder)
+        _environment(folder, texts.language)
         .get_template("report.html.j2")
         .render(
-            results=results,
+            _of_run(results, texts),
             name=partial(name_of, results=results),
-            counts=results.counts(),
-            marginal=marginal(results),
-            may_decide=may_decide(results),
-            on_the_run=on_the_run(results),
-            findings=findings(results),
-            tables=_summary_tables(results),
-            statuses=list(Status),
-            marks=_marks(results),
-            provenance=provenance_groups(results.provenance),
-            figures={name: Markup(as_script(plotly_json.render(drawing))) for name, drawing in used.items()},
-            plotly_js=Markup(plotly_js()) if used else "",
-            css=Markup((folder / "report.css").read_text(encoding="utf-8")),
-            js=Markup((folder / "report.js").read_text(encoding="utf-8")),
+            figures=figures,
+            plotly_packed=plotly_packed() if used else "",
+            css=_read(folder, "report.css", "figures.css", "cursors.css") + Markup(colours.style() + looks.style()),
+            js=_read(folder, "page.js"),
+            figures_js=_read(folder, "figures.js"),
         )
     )
 
 
-def _environment(folder: Path) -> Environment:
+def _read(folder: Path, *names: str) -> Markup:
+    """Files of ours one after the other, as they stand."""
+    return Markup("\n".join((folder / name).read_text(encoding="utf-8") for name in names))
+
+
+def _of_run(results: Results, texts: Texts) -> dict[str, Any]:
+    """What the page says of the run as a whole, and how its parts lead to each other."""
+    first, tables = front(results, texts), matrices(results)
+    verdict = texts(f"status.{results.status}").upper()
+    return {
+        "results": results,
+        "title": texts("page.title", verdict=verdict),
+        "running_title": _running_title(results, first, texts),
+        "front": first,
+        "worst_shown": _WORST,
+        "counts": results.counts(),
+        "may_decide": bool(may_decide(results)),
+        "tables": tables,
+        "coverage": coverage(results, texts),
+        "folded": _folded(texts),
+        "statuses": [status for status in Status if any(status in {t.status, *t.statuses} for t in results.tests)],
+        "check_names": sorted({name for table in tables for name in table.checks}),
+        "row_of": {
+            run.number: group.runs[0].number for table in tables for group in table.groups for run in group.runs
+        },
+        "ways": _ways(first.failed),
+        "findings": findings(results),
+        "number_of": {name_of(test, results): n for n, test in enumerate(results.tests, start=1)},
+        "marks": _marks(results),
+        "provenance": provenance_groups(results.provenance, texts),
+    }
+
+
+def _folded(texts: Texts) -> dict[str, tuple[str, ...]]:
+    """Headings of the tables whose cells stand below each other on a narrow screen."""
+    columns = {
+        "checks": ("section.heading", _CHECK_COLUMNS),
+        "imposed": ("scenario.column", _IMPOSED_COLUMNS),
+        "clauses": ("coverage.column", _CLAUSE_COLUMNS),
+        "profiles": ("page.column", ("profile", "title", "digest")),
+    }
+    told = {table: tuple(texts(f"{of}.{name}") for name in names) for table, (of, names) in columns.items()}
+    cursors = tuple(f"{name}, {unit}" if unit else name for name, unit in cursor_table.headings(texts))
+    return {**told, "cursors": cursors}
+
+
+def _running_title(results: Results, first: Front, texts: Texts) -> str:
+    """What stands above every printed page: the number of the document where one was given, and what it is."""
+    number, tested = results.report.fields.get("number", ""), results.report.fields.get("object", "")
+    codes = ", ".join(code.title for code in first.against[:1])
+    return " · ".join(part for part in (number, texts("front.kind"), tested or codes) if part)
+
+
+def _ways(failed: Sequence[int]) -> dict[int, _Way]:
+    """For every failed test the one before and after it."""
+    befores = {after: before for before, after in pairwise(failed)}
+    afters = dict(pairwise(failed))
+    return {number: _Way(befores.get(number, 0), afters.get(number, 0)) for number in failed}
+
+
+@cache
+def _environment(folder: Path, language: str) -> Environment:
+    """Templates with what they call, compiled once a language."""
+    texts = Texts(language)
     environment = Environment(
         loader=FileSystemLoader(folder),
         autoescape=True,
@@ -81,43 +157,72 @@ def _environment(folder: Path) -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters.update(css_string=_css_string, lean=_lean)
     environment.globals.update(
+        texts=texts,
+        english="" if texts.language == BASE else Markup(f' lang="{BASE}"'),
+        unsettled=UNSETTLED,
         verdicts=verdicts,
-        check_of=_check_of,
-        row=spell.row,
-        limit_in_words=spell.limit_in_words,
-        marginal_in_words=spell.marginal_in_words,
+        row=partial(spell.row, texts=texts),
+        is_bare=_is_bare,
+        limit_in_words=partial(spell.limit_in_words, texts=texts),
+        marginal_in_words=partial(spell.marginal_in_words, texts=texts),
+        why=partial(_why, texts),
+        margin_in_words=partial(margin_in_words, texts=texts),
         stretch_unless_told=spell.stretch_unless_told,
         number=spell.number,
-        label=spell.label,
-        word=lambda status: spell.STATUS_WORD[Status(status)],
+        label=partial(texts.named, "check"),
+        names=partial(_names, texts),
+        word=lambda status: texts(f"status.{status}"),
         symbol=lambda status: spell.STATUS_SYMBOL[Status(status)],
         is_verified=is_verified,
         window_headings=measurement_table.window_headings,
         measured_rows=measurement_table.measured_rows,
-        belief_rows=measurement_table.belief_rows,
+        beliefs=partial(_beliefs, texts),
+        scenario_words=scenario_words,
+        imposed_rows=imposed_rows,
+        cursor_headings=cursor_table.headings,
+        cursor_note=cursor_table.note,
+        cursor_parts=cursor_table.cursor_parts,
     )
     return environment
 
 
-def _summary_tables(results: Results) -> list[_SummaryTable]:
-    """Tests by profile, in order, with the names of the checks that occur among them."""
-    profiles = list(dict.fromkeys(test.profile for test in results.tests))
-    numbered = list(enumerate(results.tests, start=1))
-    return [_summary_table(name, [(n, test) for n, test in numbered if test.profile == name]) for name in profiles]
+def _lean(markup: str) -> Markup:
+    """Markup without indentation and the end tags that HTML leaves to the reader: of 494 tests they are 2 MB."""
+    return Markup(_LEFT_TO_READERS.sub("", _INDENTATION.sub("\n", markup)))
 
 
-def _summary_table(profile: str, tests: list[tuple[int, TestResult]]) -> _SummaryTable:
-    names = dict.fromkeys(check.check for _, test in tests for check in verdicts(test))
-    return _SummaryTable(profile, list(names), tests)
+def _css_string(text: str) -> Markup:
+    """A text as CSS shows it: all but plain letters and digits is escaped, so that nothing ends string or sheet."""
+    plain = (letter if letter.isascii() and letter.isalnum() else f"\\{ord(letter):x} " for letter in text)
+    return Markup(f'"{"".join(plain)}"')
 
 
-def _check_of(test: TestResult, name: str) -> list[Verdict]:
-    return [check for check in verdicts(test) if check.check == name]
+def _is_bare(check: Verdict) -> bool:
+    """Whether a verdict has no number, so that its reason may stand where the numbers would."""
+    return check.status not in JUDGED and check.measured is check.limit is check.margin is check.at_s is None
 
 
-def _marks(results: Results) -> list[tuple[str, str]]:
-    """Marks that occur beside the verdicts, with their meaning, in the order of the legend."""
+def _why(texts: Texts, check: Verdict) -> Markup:
+    """Why a verdict has no number: what is not judged for a trip in the page's own words, else the check's message."""
+    if texts.language == BASE:
+        return Markup.escape(check.message)
+    if check.after_trip_s is not None:
+        return Markup.escape(spell.state_in_words(check, texts))
+    return Markup('<span lang="{}">{}</span>').format(BASE, check.message)
+
+
+def _names(texts: Texts, checks: Iterable[str]) -> str:
+    return ", ".join(texts.named("check", name) for name in checks)
+
+
+def _beliefs(texts: Texts, test: TestResult) -> str:
+    return measurement_table.beliefs_in_words(test.measurements.controller, texts)
+
+
+def _marks(results: Results) -> list[str]:
+    """Marks that occur beside the verdicts, in the order of the legend."""
     used = {check.confidence for test in results.tests for check in test.checks}
     used |= {test.confidence for test in results.tests}
-    return [(mark, meaning) for mark, meaning in spell.CONFIDENCE_MEANING.items() if mark in used]
+    return [mark for mark in spell.CONFIDENCE_MEANING if mark in used]

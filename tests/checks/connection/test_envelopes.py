@@ -58,6 +58,25 @@ def test_trip_around_the_over_voltage_envelope(bench, with_envelopes, level, tri
 
 
 @pytest.mark.parametrize(
+    ("levels", "clause"),
+    [((1.12,), "Fig. 9"), ((0.6,), "Fig. 26"), ((1.12, 0.6), "Fig. 26"), ((1.0,), "Fig. 26")],
+    ids=["swell", "sag", "both", "neither"],
+)
+def test_what_is_ridden_through_names_the_envelope_that_decided(bench, with_envelopes, levels, clause):
+    """A record that only rises is of the over-voltage envelope, any other of the one below."""
+    times = np.linspace(0.0, 1.0, len(levels) + 1)
+    points = [
+        (0.0, 1.0),
+        *((t, x) for a, b, x in zip(times[:-1], times[1:], levels, strict=True) for t in (a, b)),
+        (1.0, 1.0),
+    ]
+    scenario = {"events": [{"kind": "voltage_profile", "points": points}]}
+    made = bench(depth=0, duration_s=1.0, profile=with_envelopes(envelope_over_voltage=HIGH), scenario=scenario)
+    check = made.check(KIND)
+    assert (check.status, check.clause) == (Status.PASS, clause), check.message
+
+
+@pytest.mark.parametrize(
     ("sag", "two_phase"),
     [
         (Sag(depth=0.5, phases="bc", two_phase=True), True),

@@ -50,6 +50,19 @@ def test_trip_around_the_time_of_a_band(frequency, to_hz, band_s, begun_s, late_
     assert "Hz/s over 0.1 s" in check.message
 
 
+@pytest.mark.parametrize(
+    ("tripped_s", "clause", "confidence"), [(1.0, "7.1", "code"), (1.2, "row", "confirmed"), (None, "row", "confirmed")]
+)
+def test_beyond_the_time_of_a_band_the_row_demands(frequency, tripped_s, clause, confidence):
+    """The band lets the inverter go after 1.1 s of 2 s: what is demanded from then on is the row's."""
+    made = frequency(ramp(48.5, rate_hz_s=2.0), duration_s=2.0, disconnected_after_s=tripped_s)
+    row = {"expect": "ride_through", "clause": "row", "confidence": "confirmed"}
+    made.test = made.test.model_copy(update=row)
+    check = made.check(KIND)
+    assert check.status is (Status.PASS if tripped_s is None else Status.FAIL), check.message
+    assert (check.clause, check.confidence) == (clause, confidence)
+
+
 def test_trip_in_the_continuous_band(frequency):
     """A trip while every frequency is one to be ridden through for ever fails."""
     check = frequency(ramp(50.9), disconnected_after_s=0.95).check(KIND)

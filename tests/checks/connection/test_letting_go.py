@@ -3,6 +3,7 @@
 import pytest
 
 from pvlvrt_compliance.results import Status
+from pvlvrt_compliance.scenario.events import FrequencyStep
 from pvlvrt_compliance.scenario.sag import Sag
 
 KIND = "ride_through"
@@ -23,9 +24,9 @@ def limited(profile_with):
     return make
 
 
-def row_of(made, expect, by_s=None):
-    """The record as a run of a row that demands something."""
-    made.test = made.test.model_copy(update={"expect": expect, "by_s": by_s})
+def row_of(made, expect, by_s=None, **row):
+    """The record as a run of a row that demands something; further fields are the row's."""
+    made.test = made.test.model_copy(update={"expect": expect, "by_s": by_s} | row)
     return made
 
 
@@ -77,6 +78,40 @@ def test_a_row_is_ridden_through_as_a_whole(bench, limited):
     check = late.check(KIND)
     assert check.status is Status.FAIL
     assert check.limit is check.margin is None
+
+
+@pytest.mark.parametrize(
+    ("tripped_s", "clause", "confidence"),
+    [(0.2, "Fig. 26", "code"), (0.32, "row", "confirmed"), (None, "row", "confirmed"), (0.6, "Fig. 26", "code")],
+)
+def test_whose_demand_it_is(bench, limited, tripped_s, clause, confidence):
+    """Of 0.5 s the envelope demands 0.309 s: a trip before that breaks both and is the envelope's, then the row's.
+
+    After the row's end connection is demanded by the envelope again.
+    """
+    made = bench(
+        depth=0.9, duration_s=0.5, profile=limited(), disconnected_after_s=tripped_s, q_sag_kvar=50, p_sag_kw=0
+    )
+    check = row_of(made, "ride_through", clause="row", confidence="confirmed").check(KIND)
+    assert check.status is (Status.PASS if tripped_s is None else Status.FAIL), check.message
+    assert (check.clause, check.confidence) == (clause, confidence)
+
+
+def test_a_sag_within_the_envelope_is_demanded_by_the_envelope(bench, limited):
+    """A row that asks for no more than the envelope does decides nothing; nor does one of the user's own."""
+    made = bench(depth=0.9, duration_s=0.3, profile=limited(), disconnected_after_s=0.25)
+    check = row_of(made, "ride_through", clause="row", confidence="confirmed").check(KIND)
+    assert (check.status, check.clause, check.confidence) == (Status.FAIL, "Fig. 26", "code")
+
+
+def test_without_a_step_of_the_voltage_the_row_demands(bench, limited):
+    """A step of the frequency is ridden through because its row says so: the voltage stayed above every envelope."""
+    events = (FrequencyStep(t_s=0.0, to_hz=50.5),)
+    made = bench(depth=0.0, duration_s=0.5, profile=limited(), scenario={"events": events})
+    own = made.check(KIND)
+    assert (own.status, own.clause) == (Status.PASS, "Fig. 26")
+    check = row_of(made, "ride_through", clause="row", confidence="confirmed").check(KIND)
+    assert (check.status, check.clause, check.confidence) == (Status.PASS, "row", "confirmed")
 
 
 def test_a_row_that_may_trip(bench, limited):

@@ -102,3 +102,27 @@ def test_blocked_where_support_is_due(bench, demanding, depth, status):
     profile = demanding(support_dynamics=DYNAMICS_OF_LARGE_STEPS, reactive_current=K_FACTOR)
     check = bench(depth=depth, profile=profile, p_sag_kw=0.0).check("support_dynamics")
     assert check.status is status
+
+
+def test_instants_are_those_that_were_judged(responding):
+    """Each step has its three, when the current had come; the verdict's own time is among them."""
+    late_s = (0.004, 0.012, 0.008)
+    result = responding(currents(0.4, 1.0, 0.4, late_s)).result()
+    check = next(check for check in result.checks if check.check == "support_dynamics")
+    begins_s = [step.at_s for step in result.disturbance.steps][:3]
+    names = ["activation", "response", "settling"]
+    assert [one.name for one in result.instants] == 3 * names
+    for k, begin_s in enumerate(begins_s):
+        activation, response, settling = result.instants[3 * k : 3 * k + 3]
+        assert begin_s + late_s[k] < activation.at_s < min(response.at_s, settling.at_s)
+        assert max(response.at_s, settling.at_s) < begin_s + late_s[k] + 0.021
+        assert settling.took_s == pytest.approx(settling.at_s - activation.at_s)
+    assert check.measured in {one.took_s for one in result.instants}
+    assert check.at_s in {one.at_s for one in result.instants}
+
+
+def test_what_never_comes_has_no_instant(responding):
+    """A current that stays away after the second step is neither active nor settled there."""
+    result = responding(currents(0.4, 0.4, 0.4)).result()
+    second_s, third_s = (step.at_s for step in result.disturbance.steps[1:3])
+    assert not [one for one in result.instants if second_s <= one.at_s < third_s]

@@ -44,3 +44,19 @@ def test_frequency_that_asks_for_nothing(bench, profile_with, to_hz, lasts_s):
     made = bench(depth=0, duration_s=2.2, profile=profile_with("overfrequency_power", LFSM), p_sag_kw=500,
                  scenario={"events": events})  # fmt: skip
     assert made.check("overfrequency_power").status is Status.NOT_APPLICABLE
+
+
+def test_droop_is_drawn_over_the_frequency(bench, profile_with):
+    """From the threshold to the highest frequency: P before less 40 % a hertz, within 25 kW, nothing below 0."""
+    for to_hz, rate in ((51.0, 1.0), (53.0, 4.0)):
+        power = lambda t, rate=rate, to_hz=to_hz: 500 * (1 - np.clip((rate * t - 0.2) / 2.5, 0, (to_hz - 50.2) / 2.5))  # noqa: E731
+        result = bench(depth=0, duration_s=2, profile=profile_with("overfrequency_power", LFSM), p_kw=power,
+                       scenario={"events": [ramp(to_hz, rate)]}).result()  # fmt: skip
+        (droop,) = result.characteristics
+        assert (droop.over, droop.quantity) == ("frequency_hz", "active_power_kw")
+        assert droop.x[0] == 50.2
+        assert droop.x[-1] == pytest.approx(to_hz, abs=0.01)
+        due = 500 * np.maximum(1 - (np.array(droop.x) - 50.2) / 2.5, 0)
+        assert np.array(droop.lower) == pytest.approx(due - 25, abs=0.5)
+        assert np.array(droop.upper) == pytest.approx(due + 25, abs=0.5)
+        assert (52.7 in droop.x) == (to_hz > 52.7)

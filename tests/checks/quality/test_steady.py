@@ -162,3 +162,22 @@ def test_missing_numbers(bench, demanding, kind, numbers):
     """A sample that is no number in the window leaves the test without a verdict."""
     made = bench(profile=demanding(**{kind: numbers}), spoiled={"i_b_a": 0.2}, q_sag_kvar=100.0)
     assert made.check(kind).status is Status.NOT_EVALUATED
+
+
+def test_what_is_drawn_is_what_was_judged(distorted):
+    """Every limited order and the total stand in the spectrum of each window, the one put in at its size."""
+    limits = LIMITS | {"total_percent": 5.0}
+    result = distorted(tone(7, 3.9, phase=1), limits, duration_s=0.3, scenario={"after_s": 1.5}).result()
+    assert [spectrum.check for spectrum in result.spectra] == ["harmonics", "harmonics"]
+    for spectrum in result.spectra:
+        bars = {bar.order or bar.name: bar for bar in spectrum.bars}
+        assert set(bars) == {*range(2, 51), "TRD"}
+        assert (bars[7].measured, bars[7].limit, bars[7].phase) == (pytest.approx(3.9, rel=1e-3), 4.0, "b")
+        assert bars["TRD"].measured == pytest.approx(3.9, rel=1e-2)
+        assert max(bar.measured for order, bar in bars.items() if order not in (7, "TRD")) < 0.1
+    check = next(check for check in result.checks if check.check == "harmonics")
+    nearest = min(
+        (bar for spectrum in result.spectra for bar in spectrum.bars), key=lambda bar: 1 - bar.measured / bar.limit
+    )
+    assert (check.measured, check.limit) == (nearest.measured, nearest.limit)
+    assert check.at_s in {spectrum.start_s for spectrum in result.spectra}

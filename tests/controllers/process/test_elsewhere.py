@@ -162,6 +162,7 @@ print(ForeignSimulator(sys.argv[1])(scenario, quick).end_s)
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("elsewhere", ["win32"], indirect=True)  # which lacks what the other does, and more
 def test_a_bad_controller_costs_its_own_run(elsewhere):
     """With a copy of the process or without: what went wrong is told, and the next controller is well."""
     spec = f"{Path(__file__).parents[1] / 'misbehaving.py'}:Controller"

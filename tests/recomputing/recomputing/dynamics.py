@@ -60,8 +60,8 @@ def _times(
         raise Off("the change is too small")
     x = sign * x
     moved = np.sign(change) * (x - start)
-    activated_s = _first(t_s, moved, number(demand, "activation_pu"))
-    responded_s = _first(t_s, moved, number(demand, "response_fraction") * abs(change))
+    activated_s = first_reached(t_s, moved, number(demand, "activation_pu"))
+    responded_s = first_reached(t_s, moved, number(demand, "response_fraction") * abs(change))
     found = [
         _part(t_s[0], t_s[-1], activated_s, number(demand, "activation_s")),
         _part(t_s[0], t_s[-1], responded_s, number(demand, "response_s")),
@@ -70,7 +70,7 @@ def _times(
         return found
     low = least * (1 - number(demand, "band_minus"))
     high = max(sign * final, least) * (1 + number(demand, "band_plus"))
-    entered_s = _last_entry(t_s, x, low, high)
+    entered_s = last_entry(t_s, x, low, high)
     entered_s = None if entered_s is None else max(entered_s, activated_s)
     return [*found, _part(activated_s, t_s[-1], entered_s, number(demand, "settling_s"))]
 
@@ -89,14 +89,16 @@ def _cross(t: np.ndarray, y: np.ndarray, k: int, level: float) -> float:
     return float(t[k - 1] + (t[k] - t[k - 1]) * (level - y[k - 1]) / (y[k] - y[k - 1]))
 
 
-def _first(t: np.ndarray, y: np.ndarray, level: float) -> float | None:
+def first_reached(t: np.ndarray, y: np.ndarray, level: float) -> float | None:
+    """First instant at which a series is at or above a level."""
     for k, value in enumerate(y.tolist()):
         if value >= level:
             return _cross(t, y, k, level)
     return None
 
 
-def _last_entry(t: np.ndarray, y: np.ndarray, low: float, high: float) -> float | None:
+def last_entry(t: np.ndarray, y: np.ndarray, low: float, high: float) -> float | None:
+    """Instant from which a series stays between two levels."""
     k = len(y)
     while k > 0 and low <= y[k - 1] <= high:
         k -= 1

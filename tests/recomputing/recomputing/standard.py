@@ -19,6 +19,8 @@ THRESHOLDS = {
     "normal_jump_s": 0.2,
     "no_power_pu": 0.02,
     "voltage_tolerance_pu": 0.001,
+    "response_band": 0.1,
+    "response_least_pu": 0.05,
     "uncertainty_instant_s": 0.001,
 }
 WINDOWS = {

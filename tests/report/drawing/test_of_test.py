@@ -7,8 +7,10 @@ import pytest
 from pvlvrt_compliance.disturbance.asked import disturbance_asked
 from pvlvrt_compliance.disturbance.model import NormalVoltage
 from pvlvrt_compliance.measure.quantities import MeasuredWindows
+from pvlvrt_compliance.report.drawing.colours import VERMILION
 from pvlvrt_compliance.report.drawing.model import values
-from pvlvrt_compliance.results import Band
+from pvlvrt_compliance.report.language import Texts
+from pvlvrt_compliance.results import Band, Status, Verdict
 from pvlvrt_compliance.results.band import voltage_band
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
@@ -16,6 +18,7 @@ from pvlvrt_compliance.waveforms.container import Segment, Waveforms
 from shown import curve, lines_of, panel_of, points
 
 ENVELOPE = ((0.0, 0.0), (0.15, 0.0), (1.5, 0.85))
+TEXTS = Texts()
 NORMAL = NormalVoltage(low_pu=0.9, high_pu=1.1, negative_pu=0.1)
 
 
@@ -23,6 +26,10 @@ NORMAL = NormalVoltage(low_pu=0.9, high_pu=1.1, negative_pu=0.1)
 def drawn(make_test, make_drawing):
     """The drawing of the common test."""
     return make_drawing(make_test())
+
+
+def _words(drawing):
+    return {mark.words.said(TEXTS) for mark in drawing.marks if mark.words}
 
 
 def _names(drawing):
@@ -47,10 +54,11 @@ def test_powers_are_in_kilo(drawn):
 
 def test_what_is_judged_stands_out_from_what_it_is_made_of(drawn):
     """P and Q over a cycle are drawn strong and in front, the instantaneous ones pale behind them."""
-    lines = panel_of(drawn, "Active and reactive power").lines
-    assert [line.name for line in lines[:4]] == ["p(t)", "q(t)", "P", "Q"]
-    assert all(pale.opacity < 1 and pale.width < line.width for pale, line in zip(lines[:2], lines[2:4], strict=True))
-    assert [line.opacity for line in lines[2:4]] == [1, 1]
+    for title, names in (("Active power", ["p(t)", "P"]), ("Reactive power", ["q(t)", "Q"])):
+        pale, line = panel_of(drawn, title).lines[:2]
+        assert [pale.name, line.name] == names
+        assert pale.opacity < 1 == line.opacity
+        assert pale.width < line.width
 
 
 def test_limits_are_drawn(drawn, scenario, make_test):
@@ -75,18 +83,67 @@ def test_what_lies_below_an_envelope_is_shaded(drawn):
     assert not area.in_legend
 
 
-def test_sag_and_window_are_marked(drawn, scenario, make_test):
-    """Start and clearing are lines through all panels; the sag and the window `during` are shaded."""
+def test_sag_and_windows_are_marked(drawn, scenario, make_test):
+    """Start and clearing are lines through all panels; the sag and the windows of the measurements are shaded."""
     assert [m.at_s for m in drawn.marks if m.dash] == pytest.approx([scenario.start_s, scenario.clear_s])
-    during = make_test().measurements.during
+    measured = make_test().measurements
+    windows = [(part.start_s, part.end_s) for part in (measured.before, measured.during, measured.after)]
     spans = [(shade.begin_s, shade.end_s) for shade in drawn.shades]
-    assert spans == [pytest.approx((scenario.start_s, scenario.clear_s)), (during.start_s, during.end_s)]
+    assert spans == [pytest.approx((scenario.start_s, scenario.clear_s)), *windows]
+
+
+def test_the_worst_instant_of_each_check_is_pointed_out(make_test, make_drawing):
+    """On the curve that its limits are of, in vermilion and with a cross where it failed; none without an instant."""
+    drawn = make_drawing(make_test())
+    (nearest,) = panel_of(drawn, "Phase currents").spots
+    t, y = curve(drawn, "largest fundamental")
+    assert (nearest.x, nearest.words.said(TEXTS)) == (0.371, "Current limit")
+    assert nearest.y == pytest.approx(np.interp(0.371, t, y), abs=2e-3)
+    band = _band("mine", "reactive_power_kvar", "limit of Q", 0.4, 0.6, lower=160.0)
+    checks = (
+        Verdict(check="mine", status=Status.FAIL, unit="kvar", at_s=0.5),
+        Verdict(check="mine", status=Status.FAIL, unit="kW", at_s=0.45),
+        Verdict(check="mine", status=Status.PASS, unit="kvar"),
+        Verdict(check="mine", status=Status.NOT_APPLICABLE, unit="kvar", at_s=0.55),
+    )
+    drawn = make_drawing(make_test(bands=(band,), checks=checks))
+    spots = [spot for panel in drawn.panels for spot in panel.spots if panel.over == "time"]
+    assert [(spot.x, spot.words.said(TEXTS), spot.colour) for spot in spots] == [(0.5, "mine", VERMILION)]
+    assert [spot.is_broken for spot in spots] == [True]
+    assert not nearest.is_broken
+
+
+def test_of_a_record_shorter_than_a_cycle_nothing_is_pointed_out(record, make_test, make_drawing):
+    """P over a cycle is known nowhere in it; its limit is drawn beside p(t), without a worst instant."""
+    (whole,) = record
+    short = Waveforms((whole.slice(0.0, 0.01),))
+    band = _band("mine", "active_power_kw", "limit of P", 0.0, 0.01, lower=160.0)
+    checks = (Verdict(check="mine", status=Status.PASS, unit="kW", at_s=0.005),)
+    panel = panel_of(make_drawing(make_test(bands=(band,), checks=checks), short), "Active power")
+    assert {line.name for line in panel.lines} == {"p(t)", "limit of P"}
+    assert panel.spots == ()
+
+
+def test_what_is_not_judged_and_does_not_move_is_left_out(make_record, make_test, make_drawing):
+    """Of a record in which nothing happens nothing is left but what is limited."""
+    scenario = Scenario(sag=Sag(depth=0), duration_s=0.3)
+    band = _band("dc", "dc_voltage_v", "my limit", 0.0, 0.3, upper=900.0)
+    for bands, keys in (((), set()), ((band,), {"dc_voltage"})):
+        test = make_test(
+            disturbance=disturbance_asked(scenario, NORMAL), measurements=MeasuredWindows(), bands=bands, checks=()
+        )
+        (whole,) = make_record(scenario)
+        channels = {name: x for name, x in whole.channels.items() if name.startswith("u_")}
+        still = Segment(whole.t0_s, whole.dt_s, {**channels, "v_dc_v": np.full(len(whole), 834.0)})
+        assert {panel.key for panel in make_drawing(test, Waveforms((still,))).panels} == keys
+    moving = make_drawing(make_test(bands=(), checks=()))
+    assert {"voltages", "sequences", "currents", "active_power", "dc_voltage"} <= {panel.key for panel in moving.panels}
 
 
 def test_opening_of_the_breaker_is_marked(make_record, make_test, make_drawing, scenario):
     """The instant at which `connected` falls has its own line and words."""
     mark = make_drawing(make_test(), make_record(scenario, opens_s=0.4)).marks[-1]
-    assert "breaker opens 0.400 s" in mark.words
+    assert mark.words.said(TEXTS) == "breaker opens 0.400 s"
     assert mark.at_s == pytest.approx(0.4, abs=1e-4)
     assert mark.dash
 
@@ -164,7 +221,7 @@ def test_a_jump_of_the_angle_is_marked(make_record, make_test, make_drawing):
     test = make_test(disturbance=disturbance_asked(scenario, NORMAL), measurements=MeasuredWindows())
     drawn = make_drawing(test, make_record(scenario))
     assert [m.at_s for m in drawn.marks if m.dash] == pytest.approx([0.4])
-    assert any(mark.words == "start 0.400 s (angle)" for mark in drawn.marks)
+    assert "start 0.400 s (angle)" in _words(drawn)
     assert [zoom.name for zoom in drawn.zooms] == ["whole record", "start"]
 
 
@@ -205,7 +262,7 @@ def test_words_above_the_drawing_stay_in_it(make_test, make_drawing, before_s, l
     t = np.arange(0, scenario.end_s, 0.01)
     test = make_test(disturbance=disturbance_asked(scenario, NORMAL), bands=())
     drawn = make_drawing(test, Waveforms((Segment(0.0, 0.01, {"v_dc_v": t}),)))
-    words = {mark.words.split()[0]: mark for mark in drawn.marks if "(voltage)" in mark.words}
+    words = {mark.words.key.rpartition(".")[2]: mark for mark in drawn.marks if mark.words}
     for mark in words.values():
         share = mark.at_s / scenario.end_s
         assert share >= 0.25 or mark.anchor == "left"
@@ -244,7 +301,7 @@ def test_every_band_is_drawn_and_named_once(make_test, make_drawing):
     drawn = make_drawing(make_test(bands=bands))
     looks = {}
     for _, on, name, _ in given:
-        lines = lines_of(drawn, name)
+        lines = [line for panel in drawn.panels if panel.over == "time" for line in panel.lines if line.name == name]
         assert [(points(line)[0][0], max(points(line)[0])) for line in lines] == list(stretches)
         assert [line.in_legend for line in lines] == [True, False, False]
         assert len({line.group for line in lines}) == 1

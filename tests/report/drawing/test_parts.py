@@ -90,5 +90,5 @@ def test_a_gap_in_a_record_stays_one():
 
 
 def test_the_more_figures_the_fewer_points():
-    """A single figure has 1500 buckets, one of five hundred has 300."""
-    assert [buckets_for(figures) for figures in (0, 1, 60, 100, 500, 5000)] == [1500, 1500, 1500, 900, 300, 300]
+    """A single figure has 1500 buckets, one of five hundred has 120."""
+    assert [buckets_for(figures) for figures in (0, 1, 50, 100, 500, 5000)] == [1500, 1500, 1200, 600, 120, 100]

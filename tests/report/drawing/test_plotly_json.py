@@ -1,5 +1,4 @@
 import base64
-import itertools
 import json
 import math
 
@@ -7,60 +6,84 @@ import numpy as np
 import pytest
 
 from pvlvrt_compliance.report.drawing import plotly_json
-from pvlvrt_compliance.report.drawing.model import Area, Line, OnGrid, Run, Strip, values
+from pvlvrt_compliance.report.drawing.model import Area, Axis, Bars, Line, OnGrid, Panel, Run, Strip, values
 from pvlvrt_compliance.report.drawing.plotly_traces import area_trace, line_trace, typed_array
+from pvlvrt_compliance.report.language import Texts
 from pvlvrt_compliance.results import Band
+
+TEXTS = Texts()
 
 
 @pytest.fixture(scope="module")
-def drawn(make_test, make_drawing):
-    """The figure of the common test."""
-    return plotly_json.render(make_drawing(make_test()))
+def drawing(make_test, make_drawing):
+    """The drawing of the common test."""
+    return make_drawing(make_test())
 
 
-def test_all_panels_share_one_time_axis(drawn):
-    """Zoom in one panel is zoom in all; every panel has its own values and legend, and none overlaps another."""
-    assert {trace.get("xaxis", "x") for trace in drawn["data"]} == {"x"}
-    axes = sorted({trace["yaxis"] for trace in drawn["data"]})
-    assert axes == ["y", "y2", "y3", "y4", "y5"]
-    domains = sorted(drawn["layout"][name.replace("y", "yaxis")]["domain"] for name in axes)
-    assert all(below[1] < above[0] for below, above in itertools.pairwise(domains))
-    assert domains[0][0] == 0
-    assert domains[-1][1] == 1
+@pytest.fixture(scope="module")
+def figures(drawing):
+    """Each panel of it as plotly draws it."""
+    return [plotly_json.render(panel, drawing, TEXTS) for panel in drawing.panels]
 
 
-def test_it_is_small_plain_json(drawn):
-    """27 figures fit into one report: under 150 kB each, and no number that JSON does not know."""
-    assert len(json.dumps(drawn, allow_nan=False)) < 150_000
+def test_a_panel_is_a_figure_of_its_own(figures, drawing):
+    """Every curve, limit and area of a panel is a trace, and each figure shows the same time."""
+    for figure, panel in zip(figures, drawing.panels, strict=True):
+        assert [t["name"] for t in figure["data"]] == [
+            TEXTS.named("curve", item.name) for item in (*panel.areas, *panel.lines)
+        ]
+        if panel.over == "time":
+            assert figure["layout"]["xaxis"]["range"] == list(drawing.span)
 
 
-def test_shades_and_lines_go_through_all_panels(drawn, make_test, make_drawing):
-    """Everything that is marked in the drawing is a shape on the paper's height."""
-    drawing = make_drawing(make_test())
-    shapes = drawn["layout"]["shapes"]
-    assert {(shape["yref"], shape["y0"], shape["y1"]) for shape in shapes} == {("paper", 0, 1)}
-    lines, rects = ([s["x0"] for s in shapes if s["type"] == kind] for kind in ("line", "rect"))
-    assert lines == [mark.at_s for mark in drawing.marks if mark.dash]
-    assert rects == [shade.begin_s for shade in drawing.shades]
+def test_it_is_small_plain_json(figures):
+    """27 figures fit into one report: under 170 kB each, and no number that JSON does not know."""
+    assert len(json.dumps(figures, allow_nan=False)) < 170_000
+
+
+def test_shades_and_lines_go_through_every_panel(figures, drawing):
+    """Everything that is marked in the drawing is a shape on the height of each panel over time."""
+    for figure in (figure for figure, panel in zip(figures, drawing.panels, strict=True) if panel.over == "time"):
+        shapes = figure["layout"]["shapes"]
+        assert {(shape["yref"], shape["y0"], shape["y1"]) for shape in shapes} == {("paper", 0, 1)}
+        lines, rects = ([s["x0"] for s in shapes if s["type"] == kind] for kind in ("line", "rect"))
+        assert lines == [mark.at_s for mark in drawing.marks if mark.dash]
+        assert rects == [shade.begin_s for shade in drawing.shades]
+
+
+def test_a_panel_over_something_else_has_no_instants(drawing):
+    """A path in a plane has neither steps nor windows; its unit is as long on both axes, and bars stand in it."""
+    bars = Bars("h", (2.0, 3.0), (0.1, math.nan), colour="#0072B2")
+    panel = Panel("Path", Axis("α"), Axis("β"), (), over="other", equal=True, bars=(bars,))
+    figure = plotly_json.render(panel, drawing, TEXTS)
+    assert (figure["layout"]["shapes"], figure["layout"]["annotations"]) == ([], [])
+    assert figure["layout"]["yaxis"]["scaleanchor"] == "x"
+    assert [(t["type"], t["x"], t["y"]) for t in figure["data"]] == [("bar", [2.0, 3.0], [0.1, None])]
+
+
+def test_a_figure_is_told_in_the_language(drawing):
+    """Names of curves, axes and instants are Spanish where that is asked for."""
+    figure = plotly_json.render(drawing.panels[1], drawing, Texts("es"))
+    text = json.dumps(figure, ensure_ascii=False)
+    for piece in ("envolvente de hueco", "tiempo desde el inicio", "inicio 0.300 s (tensión)", "ventana «durante»"):
+        assert piece in text
 
 
 @pytest.mark.parametrize("count", [0, 1, 3, 6])
-def test_a_legend_does_not_cover_a_title_or_a_panel(make_test, make_drawing, count):
-    """However many names it has, it stands above the title of its panel, and under the panel above it."""
+def test_there_is_room_for_words_and_legend(make_test, make_drawing, count):
+    """However many names a legend has, they stand below the axis of the panel; words of instants stand above it."""
     names = [f"limit of the active power, number {k}" for k in range(count)]
     common = {"check": "mine", "quantity": "active_power_kw", "t_s": (0.4, 0.6), "lower": (100.0, 100.0)}
-    bands = tuple(Band(name=name, **common) for name in names)
-    layout = plotly_json.render(make_drawing(make_test(bands=bands)))["layout"]
-    margins = layout["margin"]
-    plot_px = layout["height"] - margins["t"] - margins["b"]
-    above, panel = layout["yaxis3"]["domain"][0] * plot_px, layout["yaxis4"]["domain"][1] * plot_px
-    room, under = above - layout["legend4"]["y"] * plot_px, layout["legend4"]["y"] * plot_px - panel
-    assert under >= (15 if count > 1 else -0.01)  # a title is 15 px high
+    drawing = make_drawing(make_test(bands=tuple(Band(name=name, **common) for name in names)))
+    panel = next(panel for panel in drawing.panels if panel.key == "active_power")
+    layout = plotly_json.render(panel, drawing, TEXTS)["layout"]
+    plot_px = layout["height"] - layout["margin"]["t"] - layout["margin"]["b"]
     in_a_row = 606 // (45 + 6 * max(map(len, names), default=1))
-    rows = -(-(count + 4) // in_a_row) if count > 1 else 1
-    assert room >= 15 * rows - 4
-    assert layout["yaxis5"]["domain"][0] == 0
-    assert layout["yaxis"]["domain"][1] == 1
+    rows = -(-(count + 2) // in_a_row)
+    below = layout["margin"]["b"] + layout["legend"]["y"] * plot_px
+    assert below >= 15 * rows
+    assert -layout["legend"]["y"] * plot_px >= 35  # ticks, and the name of the axis
+    assert max(words["yshift"] for words in layout["annotations"]) + 15 <= layout["margin"]["t"]
 
 
 def numbers(packed):
@@ -69,7 +92,7 @@ def numbers(packed):
 
 
 def unpacked(trace):
-    """Places and values of each piece of a packed trace, as `report.js` makes them."""
+    """Places and values of each piece of a packed trace, as `figures.js` makes them."""
     packed, begin = trace["packed"], 0
     skip, edges = numbers(packed["skip"]), [numbers(packed[k]) for k in ("y", "lower", "upper") if k in packed]
     for first, step, count, _ in packed["pieces"]:

@@ -47,7 +47,7 @@ def test_id_of_a_run_is_in_all_its_files(make_test, make_results):
     assert ids == [results.run_id] * 2
     page = lxml.html.document_fromstring(html.render(results, {}))
     assert page.xpath("//meta[@name='run-id']/@content") == [results.run_id]
-    assert page.xpath("//dl[@class='run']/dt[text()='Run']/following-sibling::dd/code/text()") == [results.run_id]
+    assert page.xpath("//dl[@class='run']/div[dt='run']/dd/code/text()") == [results.run_id]
 
 
 def test_id_of_a_run_is_what_it_found_not_when(make_test, make_results):

@@ -1,0 +1,46 @@
+"""`report.pdf`: the report as it is filed and signed, on A4, PDF/A; needs the extra ``pdf`` (typst), no browser."""
+
+from collections.abc import Mapping
+
+from pvlvrt_compliance.report.drawing.model import Drawing
+from pvlvrt_compliance.report.language import Texts
+from pvlvrt_compliance.report.pdf.compiling import check_installed, compiled
+from pvlvrt_compliance.report.pdf.document import document
+from pvlvrt_compliance.results import Results
+from pvlvrt_compliance.results.files import REPORT_PDF
+
+FILE = REPORT_PDF
+ASKED_FOR = True
+
+
+def needs() -> None:
+    """See that typst is installed.
+
+    Raises
+    ------
+    UsageError
+        When it is not; names the extra.
+    """
+    check_installed()
+
+
+def render(results: Results, drawings: Mapping[str, Drawing]) -> bytes:
+    """Return the report as a PDF: of the same results and drawings the same bytes, on every machine.
+
+    Parameters
+    ----------
+    results : Results
+        In whose `report` the language and the fields of the title page are.
+    drawings : mapping
+        Drawings of tests, by their key; a test without one says so.
+
+    Raises
+    ------
+    UsageError
+        When typst is not installed.
+    OutputError
+        When it refuses what it is given.
+    PvlvrtError
+        When the templates are missing from the installation.
+    """
+    return compiled(document(results, drawings, Texts(results.report.language)))

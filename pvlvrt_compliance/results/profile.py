@@ -1,0 +1,61 @@
+"""The profile that was judged against, as a report shows it."""
+
+import datetime
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class _Frozen(BaseModel):
+    # Whoever reads a result of a later version goes by the keys that he knows; a file of a profile is held to its keys.
+    model_config = ConfigDict(frozen=True, extra="ignore")
+
+
+class AppliesToSummary(_Frozen):
+    """Which plants the text is for, in its own terms."""
+
+    plant: str = ""
+    power: str = ""
+    voltage: str = ""
+
+
+class NotCoveredSummary(_Frozen):
+    """Something that the text demands and the profile does not judge."""
+
+    what: str
+    clause: str = ""
+    why: str
+
+
+class ClauseSummary(_Frozen):
+    """A clause that the profile knows, and what of the profile is of it."""
+
+    clause: str
+    checks: tuple[str, ...] = Field(default=(), description="kinds whose requirement has it as its own clause")
+    parts: tuple[str, ...] = Field(
+        default=(), description="parts of requirements that have it: ride_through.envelope_over_voltage"
+    )
+    tests: tuple[str, ...] = Field(
+        default=(), description="ids of the profile's tests whose procedure it is, run or not"
+    )
+    judged_tests: int = Field(default=0, description="how many of the profile's tests are judged by these kinds")
+    judged_long: int = Field(default=0, description="how many of those run on request only")
+    confidence: str = Field(default="", description="the weakest mark of what is of it")
+
+
+class ProfileSummary(_Frozen):
+    """The profile that was judged against, as a report shows it."""
+
+    id: str
+    title: str
+    digest: str
+    edition: str = Field(default="", description="of the text")
+    jurisdiction: str = Field(default="", description="where it is in force")
+    applies_to: AppliesToSummary = AppliesToSummary()
+    address: str = Field(default="", description="where the text can be found")
+    read_on: datetime.date | None = Field(default=None, description="when the text was read for the profile")
+    not_covered: tuple[NotCoveredSummary, ...] = Field(
+        default=(), description="what the text demands and the profile does not judge"
+    )
+    clauses: tuple[ClauseSummary, ...] = Field(default=(), description="every clause that the profile knows")
+    notes: tuple[str, ...] = Field(default=(), description="what is not verified, a sentence each")
+    left_out: tuple[str, ...] = Field(default=(), description="long tests that were not asked for, by id")

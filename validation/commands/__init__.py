@@ -1,0 +1,1 @@
+"""The commands and their options, from the command line itself: docs/commands/."""

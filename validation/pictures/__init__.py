@@ -1,0 +1,1 @@
+"""Figures of reports that pages show: docs/index/, docs/tutorial/."""
