@@ -2,11 +2,15 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
+from unicodedata import category
 
 from pvlvrt_compliance.errors import UsageError, did_you_mean
 from pvlvrt_compliance.results import ReportDetails
 from pvlvrt_compliance.results.details import FIELDS, LOGO
 from pvlvrt_compliance.texts import all_printable
+
+LONGEST_FIELD = 1000
+"""Characters of a field, chosen: some fifteen lines of a title page, which a remark may fill."""
 
 if TYPE_CHECKING:
     from pvlvrt_compliance.study.job import Spell
@@ -66,7 +70,7 @@ def report_details(language: str, given: Mapping[str, str], *, spell: "Spell" = 
     Raises
     ------
     UsageError
-        When there is no such language or field, or the file that the logo names is none.
+        When there is no such language or field, a text does not fit a title page, or the file of the logo is none.
     """
     from pvlvrt_compliance.report.language import check_language
     from pvlvrt_compliance.report.logo import logo_address
@@ -76,10 +80,18 @@ def report_details(language: str, given: Mapping[str, str], *, spell: "Spell" = 
         if name not in FIELDS:
             hint = did_you_mean(name, FIELDS) or f"; there are: {', '.join(FIELDS)}"
             raise UsageError(f"{asked}: no field {name!r}{hint}")
+        _check_text(given[name], f"{asked} {name}")
     fields = {name: all_printable(value) for name, value in given.items() if value}
     if LOGO in fields:
         fields[LOGO] = logo_address(given[LOGO], f"{asked} {LOGO}")
     return ReportDetails(language=check_language(language, spell("language")), fields=fields)
+
+
+def _check_text(text: str, spelled: str) -> None:
+    if len(text) > LONGEST_FIELD:
+        raise UsageError(f"{spelled}: {len(text)} characters; at most {LONGEST_FIELD} stand on a title page")
+    if any(category(character) == "Cc" for character in text):
+        raise UsageError(f"{spelled}: has a control character; a field is one line of text")
 
 
 def fields_of(words: Sequence[str], *, spell: "Spell" = str) -> dict[str, str]:

@@ -91,3 +91,18 @@ def test_fields_carry_its_content(tmp_path):
 def test_a_field_need_not_be_text():
     """Bytes of a command line that are none are spelled out, so that every report can be written."""
     assert report_details("en", {"client": "a\udcff"}).fields == {"client": "a\\xff"}
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("x" * 1001, "1001 characters; at most 1000"),
+        ("a\x1b[31m", "a control character"),
+        ("a\nb", "a control character"),
+    ],
+)
+def test_a_field_fits_a_title_page(text, reason):
+    """A text of pages, or one that a terminal would act on, is refused; one that just fits is not."""
+    with pytest.raises(UsageError, match=f"remark: .*{reason}"):
+        report_details("en", {"remark": text}, spell=lambda _: "--report-field")
+    assert report_details("en", {"remark": "x" * 1000}).fields == {"remark": "x" * 1000}
