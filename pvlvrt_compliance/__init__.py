@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from pvlvrt_compliance.api import check, evaluate, load_profile
+    from pvlvrt_compliance.api import check, compare, evaluate, load_profile
     from pvlvrt_compliance.errors import (
         MeasurementError,
         OutputError,
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     )
     from pvlvrt_compliance.profile.profile import Profile
     from pvlvrt_compliance.results import Finding, Results, Status, TestResult, Verdict, exit_status
+    from pvlvrt_compliance.results.comparison import Comparison, comparison_status
     from pvlvrt_compliance.results.reading import read_results
     from pvlvrt_compliance.scenario.sag import Sag
     from pvlvrt_compliance.scenario.scenario import Scenario
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     __version__: str
 
 __all__ = [
+    "Comparison",
     "Finding",
     "MeasurementError",
     "Nominal",
@@ -48,6 +50,8 @@ __all__ = [
     "Waveforms",
     "__version__",
     "check",
+    "compare",
+    "comparison_status",
     "evaluate",
     "exit_status",
     "load_profile",
@@ -56,11 +60,12 @@ __all__ = [
 ]
 
 _HOMES = {
-    **dict.fromkeys(("check", "evaluate", "load_profile"), "api"),
+    **dict.fromkeys(("check", "compare", "evaluate", "load_profile"), "api"),
     **dict.fromkeys(("MeasurementError", "OutputError", "ProfileError"), "errors"),
     **dict.fromkeys(("PvlvrtError", "SimulationError", "UsageError"), "errors"),
     **dict.fromkeys(("Finding", "Results", "Status", "TestResult", "Verdict", "exit_status"), "results"),
     **dict.fromkeys(("Segment", "Waveforms"), "waveforms"),
+    **dict.fromkeys(("Comparison", "comparison_status"), "results.comparison"),
     "Nominal": "units",
     "Profile": "profile.profile",
     "Sag": "scenario.sag",

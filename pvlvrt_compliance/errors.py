@@ -5,7 +5,7 @@ The command line turns them into one clear line and an exit status; library user
 
 import difflib
 import errno
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 _MOST_LISTED = 100
 
@@ -67,7 +67,18 @@ def unwritable(message: str, error: OSError) -> PvlvrtError:
     return OutputError(message) if error.errno in _NO_ROOM else UsageError(message)
 
 
+def spelled_of(spell: Callable[[str], str], field: str, item: str) -> str:
+    """How a message names a field of which one item is meant: where that stands, if who spells the field knows it."""
+    of_item: Callable[[str, str], str] | None = getattr(spell, "of_item", None)
+    return spell(field) if of_item is None else of_item(field, item)
+
+
+def near_misses(word: str, known: Iterable[str]) -> list[str]:
+    """Return up to three words of those known that a word may have been meant to be, the nearest first."""
+    return difflib.get_close_matches(word, list(known), n=3, cutoff=0.6)
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return ``'; did you mean "x" or "y"?'`` for the near misses of a word, or an empty string."""
-    near = [f'"{match}"' for match in difflib.get_close_matches(word, list(known), n=3, cutoff=0.6)]
+    near = [f'"{match}"' for match in near_misses(word, known)]
     return f"; did you mean {' or '.join(near)}?" if near else ""

@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 from unicodedata import category
 
-from pvlvrt_compliance.errors import UsageError, did_you_mean
+from pvlvrt_compliance.errors import UsageError, did_you_mean, spelled_of
 from pvlvrt_compliance.results import ReportDetails
 from pvlvrt_compliance.results.details import FIELDS, LOGO
 from pvlvrt_compliance.texts import all_printable
@@ -60,7 +60,8 @@ def output_in(
         csv=csv,
         spell=spell,
         details=details or ReportDetails(),
-        told=[each.file for each in written if each.asked_for],
+        told=[each.file for each in written if each.takes_a_while],
+        of_whole_runs=[each.file for each in written if each.of_whole_runs],
     )
 
 
@@ -75,15 +76,15 @@ def report_details(language: str, given: Mapping[str, str], *, spell: "Spell" = 
     from pvlvrt_compliance.report.language import check_language
     from pvlvrt_compliance.report.logo import logo_address
 
-    asked = spell("report_fields")
     for name in given:
+        asked = spelled_of(spell, "report_fields", name)
         if name not in FIELDS:
             hint = did_you_mean(name, FIELDS) or f"; there are: {', '.join(FIELDS)}"
             raise UsageError(f"{asked}: no field {name!r}{hint}")
         _check_text(given[name], f"{asked} {name}")
     fields = {name: all_printable(value) for name, value in given.items() if value}
     if LOGO in fields:
-        fields[LOGO] = logo_address(given[LOGO], f"{asked} {LOGO}")
+        fields[LOGO] = logo_address(given[LOGO], f"{spelled_of(spell, 'report_fields', LOGO)} {LOGO}")
     return ReportDetails(language=check_language(language, spell("language")), fields=fields)
 
 
@@ -106,6 +107,7 @@ def fields_of(words: Sequence[str], *, spell: "Spell" = str) -> dict[str, str]:
     for word in words:
         name, equals, value = word.partition("=")
         if not (name.strip() and equals):
-            raise UsageError(f"{spell('report_fields')}: {word!r} is not NAME=VALUE, for instance client='Solar Ltd'")
+            asked = spelled_of(spell, "report_fields", word)
+            raise UsageError(f"{asked}: {word!r} is not NAME=VALUE, for instance client='Solar Ltd'")
         fields[name.strip()] = value.strip()
     return fields

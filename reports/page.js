@@ -28,6 +28,7 @@
     section,
     verdicts: Array.from(section.querySelectorAll("tr[data-check]"), (row) => ({
       check: row.dataset.check, status: row.dataset.status, marginal: "marginal" in row.dataset,
+      known: "known" in row.dataset, worse: "worse" in row.dataset,
     })),
   }));
   const standIns = Array.from(document.querySelectorAll("[data-of]"), (element) => ({
@@ -47,6 +48,7 @@
   const MEANS = {
     all: () => true,
     failed: ({ status }) => status === "fail" || status === "error",
+    news: ({ status, known, worse }) => worse || status === "error" || (status === "fail" && !known),
     marginal: ({ marginal }) => marginal,
     unjudged: ({ status }) => status === "not_evaluated" || status === "error",
   };
@@ -83,7 +85,8 @@
   }
 
   function write({ status, check, text }) {
-    tools.elements.status.value = status in MEANS ? status : "all";
+    const choices = Array.from(tools.elements.status, (choice) => choice.value);  // not all pages have all
+    tools.elements.status.value = choices.includes(status) ? status : "all";
     tools.elements.check.value = check;
     if (tools.elements.check.selectedIndex < 0) tools.elements.check.value = "";
     tools.elements.text.value = text;

@@ -1,6 +1,7 @@
-"""How property tests draw; and loops over time with one block replaced, that tests tell from the right one."""
+"""How property tests draw; what none takes from its surroundings; loops over time with one block replaced."""
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
@@ -20,6 +21,36 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Every run draws the same, but for a search."""
     draws.load_profile(config.getoption("--search"))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _settings_of_nobody(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """No test takes settings from above its folder, or from the environment: what it is given is all there is."""
+    (tmp_path_factory.getbasetemp() / ".git").mkdir(exist_ok=True)  # where the search for a file ends
+    for name in [name for name in os.environ if name.startswith("PVLVRT_")]:
+        del os.environ[name]
+
+
+COUNT_CHILDREN = "COVERAGE_PROCESS_CONFIG"
+"""Variable by which a process that a test starts finds that its lines are counted."""
+
+
+@pytest.fixture(scope="session", autouse=True)
+def how_children_count() -> Iterator[str | None]:
+    """Lines are counted in this process; in those that tests start it makes imports and programs half as slow again.
+
+    Gives the variable's value, None where nothing is counted.
+    """
+    yield (value := os.environ.pop(COUNT_CHILDREN, None))
+    if value is not None:
+        os.environ[COUNT_CHILDREN] = value
+
+
+@pytest.fixture
+def counted_children(monkeypatch: pytest.MonkeyPatch, how_children_count: str | None) -> None:
+    """Count lines in the processes that a test starts as well: for what runs nowhere else."""
+    if how_children_count is not None:
+        monkeypatch.setenv(COUNT_CHILDREN, how_children_count)
 
 
 @pytest.fixture(scope="session")

@@ -23,6 +23,8 @@ ALLOWED = {
     "cli": {"*"},
     # The public API.
     "__init__": {"api", "errors", "profile", "results", "scenario", "units", "waveforms"},  # each when first used
+    # Another way in, beside the command line: the same settings, the same words.
+    "pytest_plugin": {"api", "cli.options", "errors", "report", "results", "settings", "study"},
     # The public functions; they hand reports to the run, which knows none.
     "api": {"checks", "output", "profile", "results", "scenario", "study", "units", "waveforms"},
     # What a run writes.
@@ -37,7 +39,7 @@ ALLOWED = {
     # Judging: by what evidence says, never by the simulator.
     "checks": COMMON | {"data", "disturbance", "evidence", "measure", "profile", "results", "waveforms"},
     # The one result: plain data, so that reading it stays light.
-    "results": {"errors", "texts", "measure.quantities", "disturbance.model"},
+    "results": {"errors", "texts", "units", "measure.quantities", "disturbance.model"},
     # What a check sees of one record.
     "evidence": COMMON | {"disturbance", "measure", "profile", "waveforms"},
     # What standards measure.
@@ -50,6 +52,8 @@ ALLOWED = {
     "profile": COMMON | {"data", "scenario"},
     # What every file that people write shares.
     "data": {"errors", "resources"},
+    # What was written down instead of typed; which settings there are, whoever asks says.
+    "settings": {"controllers.bundled", "data", "errors"},
     # What is asked of grid, weather and set-points.
     "scenario": COMMON | {"data"},
     # Controllers of users: whatever a door needs of the loop lies in simulation/door.
@@ -81,11 +85,14 @@ ALLOWED = {
 NUMBA = {"compiled", "kernel", "plant", "control", "hardware", "simulation"}
 """The five rooms that know numba; the kernel's has two names."""
 
+WAYS_IN = ("cli", "__main__", "pytest_plugin")
+"""Where a program comes in: the table of options is there for all of them."""
+
 NEVER = (
     ("simulation", "controllers", "the loop takes whatever is behind a door"),
     ("study", "report", "a run gives results; what is made of them is another's affair"),
     ("checks", "simulation", "what is judged is a record, simulated or not"),
-    *((room, "cli", "only the command line calls") for room in ALLOWED if room not in ("cli", "__main__")),
+    *((room, "cli", "only what starts a run calls") for room in ALLOWED if room not in WAYS_IN),
     *(
         (room, part, "records by others are read, measured, judged and shown in the same way")
         for room in ("checks", "disturbance", "evidence", "measure", "profile", "results", "waveforms", "report")
@@ -97,6 +104,7 @@ NEVER = (
 COMMANDS = {
     "main": {"controllers"},  # what signals and the end of the command are
     "running": {"controllers"},  # likewise
+    "completion/values": {"controllers", "simulation"},  # names of what there is, which load no kernel
     "controllers/header": {"controllers"},
     "controllers/inspect": {"controllers", "simulation"},  # parameters, which load no kernel
     "controllers/new": {"controllers"},
@@ -266,20 +274,36 @@ def test_the_table_has_no_entry_for_what_is_gone():
 
 
 HEAVY = {"numba", "scipy", "plotly", "pandas"}
+OLD_RESULTS = str(Path(__file__).parent / "golden" / "results-0.1.0" / "results.json")
+COMPARE = ["compare", OLD_RESULTS, OLD_RESULTS, "--output", __file__]  # all but written: a file is no folder
 
 
 @pytest.mark.parametrize(
     ("code", "never"),
     [
         (f"import {NAME}.controllers", HEAVY | {"numpy", "pydantic", "typer", "rich", "ctypes", "subprocess"}),
+        (f"import {NAME}.pytest_plugin", HEAVY | {"numpy", "pydantic", "typer", "rich", f"{NAME}.cli", f"{NAME}.data"}),
         (f"import {NAME}.results", HEAVY | {"numpy"}),
-        (f"import {NAME}.cli.main", HEAVY),
+        (f"import {NAME}.cli.main", HEAVY | {"numpy", "pydantic", "jinja2"}),  # a shell asks at each press of a key
+        (f"from {NAME}.cli.main import run\nrun(['config', 'show'])", HEAVY | {"numpy", f"{NAME}.study"}),
         (f"from {NAME}.cli.main import run\nrun(['profiles', 'list'])", HEAVY),
+        (f"from {NAME}.cli.main import run\nrun({COMPARE})", HEAVY),
         (f"from {NAME}.cli.main import run\nrun(['controllers', 'header'])", HEAVY | {"numpy"}),
         (f"import {NAME}.checks.api, {NAME}.checks.evaluate, {NAME}.waveforms.recording", HEAVY - {"scipy"}),
         (f"import {NAME}.simulation.simulate", {"plotly", f"{NAME}.controllers", f"{NAME}.study", f"{NAME}.checks"}),
     ],
-    ids=["a user's controller", "results", "--help", "profiles", "header", "judging", "simulation"],
+    ids=[
+        "a user's controller",
+        "pytest",
+        "results",
+        "--help",
+        "config",
+        "profiles",
+        "compare",
+        "header",
+        "judging",
+        "simulation",
+    ],
 )
 def test_what_is_imported_stays_light(code, never):
     """What is only read, shown or judged never pays for the simulator, nor a simulation for what comes after it."""

@@ -6,7 +6,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pvlvrt_compliance.errors import UsageError
-from pvlvrt_compliance.units import Nominal, parse_duration, parse_fraction
+from pvlvrt_compliance.units import (
+    ANGLE,
+    FREQUENCY,
+    IRRADIANCE,
+    RATIO,
+    TEMPERATURE,
+    Nominal,
+    parse_duration,
+    parse_fraction,
+    parse_quantity,
+)
 
 
 @given(st.floats(0, 1))
@@ -49,6 +59,9 @@ def test_any_text_is_a_value_or_a_usage_error(text):
         assert 0 <= parse_fraction(text, "--sag") <= 1
     with contextlib.suppress(UsageError):
         assert 0 < parse_duration(text, "--duration") < math.inf
+    for quantity in (FREQUENCY, TEMPERATURE, ANGLE, IRRADIANCE, RATIO):
+        with contextlib.suppress(UsageError):
+            assert math.isfinite(parse_quantity(text, "--x", quantity))
 
 
 @given(st.floats(1e-6, 1e6))
@@ -89,3 +102,45 @@ def test_the_bases_belong_together(power_va, voltage_v):
     assert 1.5 * n.phase_voltage_peak_v * n.phase_current_peak_a == pytest.approx(power_va)
     assert n.voltage_ab_v * n.current_ab_a == pytest.approx(power_va)
     assert n.voltage_ab_v == pytest.approx(n.impedance_ohm * n.current_ab_a)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "spellings", "value"),
+    [
+        (FREQUENCY, ("50", "50Hz", " 50 hz ", "5e1 HZ", "0.05kHz", "0.05 khz", "+50.0Hz"), 50),
+        (TEMPERATURE, ("-45", "-45C", "-45 degC", "-45°C", "-45 c"), -45),
+        (ANGLE, ("-90", "-90deg", "-90 °"), -90),
+        (IRRADIANCE, ("800", "800W/m2", "800 W/m²", "0.8kW/m2", ".8 kW/m^2", "800 w / m2"), 800),
+        (RATIO, ("2.5", "25e-1"), 2.5),
+    ],
+)
+def test_a_quantity_is_read_with_its_usual_units(quantity, spellings, value):
+    """Any usual spelling is one number; one without a unit is in the first of them."""
+    for text in spellings:
+        assert parse_quantity(text, "--x", quantity) == pytest.approx(value, rel=1e-15)
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_a_number_alone_is_read_as_written(value):
+    """Whatever Python prints of a finite number is read back unchanged, for every quantity."""
+    for quantity in (FREQUENCY, TEMPERATURE, ANGLE, IRRADIANCE, RATIO):
+        assert parse_quantity(repr(value), "--x", quantity) == value
+
+
+@pytest.mark.parametrize(
+    "text", ["", "fast", "nan", "inf", "1e999", "50Hz Hz", "5 0", "5.5.5", "Hz", "50 m", "1,5", "1.000,5"]
+)
+def test_what_is_no_quantity_is_refused(text):
+    """Words, other units, commas and more than one number are refused, by the name of the option."""
+    with pytest.raises(UsageError, match=r"^--frequency: "):
+        parse_quantity(text, "--frequency", FREQUENCY)
+
+
+@pytest.mark.parametrize(
+    ("text", "spelled"),
+    [("0,5s", "0.5s"), ("1,25 s", "1.25 s"), ("1,000ms", "1.000ms or 1000ms")],
+)
+def test_a_comma_is_told_with_what_may_be_meant(text, spelled):
+    """A decimal comma is no point, and behind a comma of three digits there may be thousands."""
+    with pytest.raises(UsageError, match=f"has a comma: {spelled}; write"):
+        parse_duration(text, "--duration")

@@ -2,6 +2,7 @@
 
 from pvlvrt_compliance.checks.check import RowCheck
 from pvlvrt_compliance.checks.registry import find_check, judges_connection
+from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.requirements import Requirement
 from pvlvrt_compliance.results import Status, TestResult, Verdict, worst
@@ -13,6 +14,15 @@ def row_rule(profile: Profile) -> tuple[RowCheck, Requirement] | None:
         if isinstance(check := find_check(kind), RowCheck):
             return check, requirement
     return None
+
+
+def is_judged_as_one(profile: Profile, test: TestCase) -> bool:
+    """Whether a rule of the profile speaks of all runs of the row of a test together.
+
+    Where only some checks are asked for, too: the rule may let a run off, whichever of them are told.
+    """
+    rule = row_rule(profile)
+    return rule is not None and bool(test.row) and test.has(rule[0].kind)
 
 
 def connection_status(result: TestResult) -> Status:

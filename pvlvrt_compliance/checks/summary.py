@@ -9,8 +9,26 @@ from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.results import AppliesToSummary, ClauseSummary, NotCoveredSummary, ProfileSummary
 
 
-def summarise(profile: Profile, tests: Iterable[TestCase], left_out: Iterable[TestCase] = ()) -> ProfileSummary:
-    """The profile as a report on these tests shows it, with what is not verified and what was left out."""
+def summarise(
+    profile: Profile,
+    tests: Iterable[TestCase],
+    left_out: Iterable[TestCase] = (),
+    not_selected: Iterable[TestCase] = (),
+    not_run: Iterable[TestCase] = (),
+    selected_checks: Iterable[str] = (),
+) -> ProfileSummary:
+    """The profile as a report on these tests shows it, with what is not verified and what has not been run.
+
+    Parameters
+    ----------
+    profile : Profile
+    tests : iterable of TestCase
+        Those that were run.
+    left_out, not_selected, not_run : iterable of TestCase
+        Long ones that nobody asked for, those that were selected away, and those that a run came to its end before.
+    selected_checks : iterable of str
+        Kinds that were judged, where only some were asked for.
+    """
     return ProfileSummary(
         id=profile.id,
         title=profile.title,
@@ -24,6 +42,9 @@ def summarise(profile: Profile, tests: Iterable[TestCase], left_out: Iterable[Te
         clauses=clauses_of(profile),
         notes=profile.unverified({test.id for test in tests}),
         left_out=tuple(test.id for test in left_out),
+        selected_checks=tuple(selected_checks),
+        not_selected=tuple(test.id for test in not_selected),
+        not_run=tuple(test.id for test in not_run),
     )
 
 
@@ -57,11 +78,9 @@ def _of_requirements(profile: Profile) -> Iterator[_Place]:
 def _of_tests(profile: Profile, tests: Iterable[TestCase]) -> Iterator[_Place]:
     steps = profile.procedure.steps
     tables = {row.id: steps[row.steps.table] for row in profile.all_rows if row.steps is not None}
-    rows = {row.id for row in profile.all_rows}
     for test in tests:
         yield _Place(test.clause, test.confidence, test=test.id)
-        # The name of a row with several powers goes on with that of the power.
-        row = test.row if test.row in rows else test.row.rpartition("-")[0]
+        row = profile.row_of(test)
         if row in tables and tables[row].clause:
             yield _Place(tables[row].clause, tables[row].confidence, test=test.id)
 

@@ -10,13 +10,18 @@ from typing import Any
 
 import typer
 
-from pvlvrt_compliance.cli import controllers, profiles
+from pvlvrt_compliance.cli import baseline, config, controllers, profiles
 from pvlvrt_compliance.cli.check import check
+from pvlvrt_compliance.cli.compare import compare
+from pvlvrt_compliance.cli.completion.answering import answer, is_asked
+from pvlvrt_compliance.cli.completion.command import completion
+from pvlvrt_compliance.cli.guarding import guarded
 from pvlvrt_compliance.cli.schema import schema
 from pvlvrt_compliance.cli.telling import tell
+from pvlvrt_compliance.cli.typed import understood
 from pvlvrt_compliance.compiled.notes import tell_in_lines
 from pvlvrt_compliance.controllers.process.command import STOPS, become_the_command, leave, status_of, words_of
-from pvlvrt_compliance.errors import OutputError, PvlvrtError, UsageError
+from pvlvrt_compliance.errors import OutputError, PvlvrtError
 from pvlvrt_compliance.texts import write_any_name
 
 USAGE_STATUS = 2
@@ -27,22 +32,34 @@ _CommandLineError: Any = typer.BadParameter.__bases__[0]
 
 app = typer.Typer(
     name="pvlvrt-check",
-    add_completion=False,
+    add_completion=False,  # typer's writes into start-up files; "completion" prints, and asks as typer's does
     rich_markup_mode="rich",
     no_args_is_help=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 app.callback(invoke_without_command=True)(check)
+app.command()(compare)
 app.command()(schema)
+app.command()(completion)
 app.add_typer(profiles.app, name="profiles")
 app.add_typer(controllers.app, name="controllers")
+app.add_typer(config.app, name="config")
+app.add_typer(baseline.app, name="baseline")
 
 
 def run(arguments: Sequence[str]) -> int:
     """Run the command with these arguments and return its exit status."""
+    with guarded():
+        return _run(arguments)
+
+
+def _run(arguments: Sequence[str]) -> int:
+    command: Any = typer.main.get_command(app)
+    if is_asked():
+        return answer(command)
     try:
-        status = typer.main.get_command(app).main(
-            args=_with_explicit_pair(arguments),
+        status = command.main(
+            args=understood(command, arguments),
             prog_name="pvlvrt-check",
             standalone_mode=False,
             obj=("pvlvrt-check", *arguments),
@@ -70,7 +87,7 @@ def main() -> None:
         status = _flushed(run(sys.argv[1:]))
     except Exception:
         # Python's own status for a crash is 1, which means here that a check failed.
-        with suppress(OSError):
+        with suppress(OSError), guarded():
             traceback.print_exc()
         status = CRASHED_STATUS
     except STOPS as end:
@@ -101,22 +118,6 @@ def _complain_of(error: PvlvrtError | OSError) -> int:
 
 def _unwritten(error: OSError) -> str:
     return f"standard output cannot be written: {error.strerror or error}"
-
-
-def _with_explicit_pair(arguments: Sequence[str]) -> list[str]:
-    """Read ``--two-phase ab`` and ``--two-phase=ab`` as ``--two-phase --phases ab``: typer has no optional values."""
-    given: list[str] = []
-    for argument in arguments:
-        flag, equals, pair = argument.partition("=")
-        if given and given[-1] == "--two-phase" and not argument.startswith("-"):
-            given += ["--phases", argument]
-        elif flag == "--two-phase" and equals:
-            given += ["--two-phase", "--phases", pair]
-        else:
-            given.append(argument)
-    if sum(argument.partition("=")[0] == "--phases" for argument in given) > 1:
-        raise UsageError("--phases: given twice (--two-phase PAIR names the phases, too)")
-    return given
 
 
 def _complain(message: str, status: int = USAGE_STATUS) -> int:

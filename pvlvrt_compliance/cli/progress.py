@@ -11,8 +11,11 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn
 def progress_bar(tests: int, quiet: bool) -> Iterator[Callable[[str, int, int], None]]:
     """Bar on stderr in a terminal; elsewhere silent. Calls name the test that begins and how many are done."""
     log = Console(stderr=True)
+    if quiet or not log.is_terminal:
+        yield _silent  # a bar that is switched off still ends a line, with rich before 14.3
+        return
     columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
-    with Progress(*columns, console=log, transient=True, disable=quiet or not log.is_terminal) as progress:
+    with Progress(*columns, console=log, transient=True) as progress:
         task = progress.add_task("preparing the simulator (once after an update: about 15 s)", total=tests)
         begun = False
 
@@ -23,3 +26,7 @@ def progress_bar(tests: int, quiet: bool) -> Iterator[Callable[[str, int, int], 
             begun = True
 
         yield advance
+
+
+def _silent(_test: str, _done: int, _total: int) -> None:
+    """Nothing is told."""

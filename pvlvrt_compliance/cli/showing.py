@@ -1,17 +1,17 @@
 """What the main command prints of a run: its results, or why it has ended early."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from rich.console import Console
 
-from pvlvrt_compliance.data.marks import CHOSEN
-from pvlvrt_compliance.report import console
+from pvlvrt_compliance.report import console, doubts
+from pvlvrt_compliance.report.formats import chosen_formats
 from pvlvrt_compliance.results import Results
 from pvlvrt_compliance.results.files import REPORT
-from pvlvrt_compliance.texts import printable
+from pvlvrt_compliance.texts import printable, shell_word
 
 
 def log(text: str) -> None:
@@ -21,8 +21,17 @@ def log(text: str) -> None:
         screen.print(printable(text), soft_wrap=not screen.is_terminal)
 
 
-def show(results: Results, folder: Path, *, quiet: bool, own_controller: bool) -> None:
-    """Print the results of a run, whose files are in a folder.
+def show(
+    results: Results,
+    folder: Path,
+    formats: Collection[str] = (),
+    *,
+    quiet: bool,
+    own_controller: bool,
+    verbose: bool = False,
+    exit_zero: bool = False,
+) -> None:
+    """Print the results of a run, whose files are in a folder; ``formats`` were asked for besides.
 
     Raises
     ------
@@ -31,17 +40,27 @@ def show(results: Results, folder: Path, *, quiet: bool, own_controller: bool) -
     """
     screen = Console(highlight=False, markup=False, emoji=False)  # a profile's texts are shown as they are
     if quiet:
-        screen.print(console.summary_line(results), soft_wrap=True)
+        screen.print(console.summary_line(results, exit_zero=exit_zero), soft_wrap=True)
         return
-    screen.print(console.render(results))
+    if not screen.is_terminal:
+        screen.width = max(screen.width, console.least_width(results))
+    screen.print(console.render(results, exit_zero=exit_zero))
     if own_controller:
         screen.print(_rates(results.provenance), soft_wrap=not screen.is_terminal)
+    for line in doubts.in_full(results) if verbose else filter(None, [doubts.in_short(results)]):
+        # In a file a line stays one line; a terminal would cut it in the middle of a word.
+        screen.print(line, soft_wrap=not screen.is_terminal)
     for profile in results.profiles:
-        _show_doubts(screen, profile.notes)
         if profile.left_out:
             left_out = f"Left out: {', '.join(profile.left_out)} of {profile.id} (long; --include-long runs them)"
             screen.print(left_out, soft_wrap=not screen.is_terminal)
-    screen.print(f"Report: {folder / REPORT}", soft_wrap=True)
+        if profile.not_run:
+            not_run = f"Not run: {', '.join(profile.not_run)} of {profile.id} (the run ended before)"
+            screen.print(not_run, soft_wrap=not screen.is_terminal)
+    if results.baseline and (results.baseline.better or results.baseline.gone):
+        words = ("pvlvrt-check", "baseline", "update", results.baseline.file, "--results", str(folder))
+        screen.print(f"To update the baseline: {' '.join(map(shell_word, words))}", soft_wrap=True)
+    screen.print(f"Report: {_files(folder, formats)}", soft_wrap=True)
 
 
 def _rates(origin: Mapping[str, Any]) -> str:
@@ -54,12 +73,7 @@ def _rates(origin: Mapping[str, Any]) -> str:
     )
 
 
-def _show_doubts(screen: Console, notes: tuple[str, ...]) -> None:
-    """Name what is not verified; what the project itself has chosen is only counted, the report lists it."""
-    chosen = [note for note in notes if f": {CHOSEN} (" in note]
-    for note in notes:
-        if note not in chosen:
-            # In a file a note stays one line; a terminal would cut it in the middle of a word.
-            screen.print(f"Not verified: {note}", soft_wrap=not screen.is_terminal)
-    if chosen:
-        screen.print(f"Not verified: {len(chosen)} numbers that this project has chosen (the report lists them)")
+def _files(folder: Path, formats: Collection[str]) -> str:
+    """The report that people read, and the files that were asked for besides."""
+    asked = [each.file for each in chosen_formats(formats) if each.asked_for]
+    return ", ".join(str(folder / file) for file in (REPORT, *asked))

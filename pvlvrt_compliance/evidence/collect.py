@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pvlvrt_compliance.disturbance.asked import disturbance_asked
 from pvlvrt_compliance.disturbance.model import Disturbance, NormalVoltage
 from pvlvrt_compliance.evidence.evidence import Evidence, floors_of
+from pvlvrt_compliance.measure.quantities import MeasuredWindows
 from pvlvrt_compliance.measure.summary import measure
 from pvlvrt_compliance.measure.windows import STANDARD_RULES, WindowRules
 from pvlvrt_compliance.profile.procedure import TestCase
@@ -44,6 +45,39 @@ def collect(
         by_s=test.by_s,
         row=test.demand,
         release=release,
+    )
+
+
+def collect_without_profile(
+    waveforms: Waveforms,
+    nominal: Nominal,
+    disturbance: Disturbance,
+    available_power_w: float,
+    measurements: MeasuredWindows,
+) -> Evidence:
+    """What a record shows without the profile that it was judged by: every series to be looked at, for no verdict.
+
+    Parameters
+    ----------
+    waveforms : Waveforms
+        The record.
+    nominal : Nominal
+        Base of the per-unit values.
+    disturbance : Disturbance
+        What the grid did.
+    available_power_w : float
+        What the PV array could give before the disturbance (W).
+    measurements : MeasuredWindows
+        What was measured in its windows.
+    """
+    return Evidence(
+        waveforms=waveforms,
+        nominal=nominal,
+        disturbance=disturbance,
+        available_power_w=available_power_w,
+        measurements=measurements,
+        rules=STANDARD_RULES,
+        blocked_below_pu=0.0,
     )
 
 

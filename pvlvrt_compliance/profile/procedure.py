@@ -163,6 +163,9 @@ class TestCase(Frozen):
     row: str = Field(default="", description="id of the row that it is a run of")
     k_factor: float | None = None
     checks: tuple[str, ...] | None = None
+    only: tuple[str, ...] | None = Field(
+        default=None, description="kinds that are judged of those, where somebody asks for some of them only"
+    )
     long: bool = False
     expect: Expect | None = Field(default=None, description="of a row; none: a sag of the user's own")
     by_s: float | None = None
@@ -177,4 +180,8 @@ class TestCase(Frozen):
 
     def judges(self, kind: str) -> bool:
         """Whether the test is judged by a kind of requirement."""
+        return self.has(kind) and (self.only is None or kind in self.only)
+
+    def has(self, kind: str) -> bool:
+        """Whether a kind of requirement judges the test when all are asked for."""
         return self.checks is None or kind in self.checks

@@ -1,6 +1,7 @@
 """A grid code as data: requirements, test procedure and acceptance, each number with its provenance."""
 
 import hashlib
+import re
 from collections.abc import Collection, Iterator
 from functools import cache, cached_property
 from typing import Any, Literal
@@ -20,6 +21,8 @@ from pvlvrt_compliance.profile.thresholds import STANDARD_THRESHOLDS, Thresholds
 from pvlvrt_compliance.scenario.sag import Sag
 
 SCHEMA_VERSION = 1
+
+_AD_HOC, _PERCENT = "sag", "pct"
 
 
 class Profile(Head):
@@ -82,6 +85,15 @@ class Profile(Head):
         """
         return tuple(case for row in self.all_rows for case in expand(row, self.procedure, self.envelope, overrides))
 
+    def row_of(self, test: TestCase) -> str:
+        """Id of the row of the test table that a test is a run of; nothing of a sag of the user's own.
+
+        The test's own ``row`` goes on with the name of the power where its row has several: ``VD3-full`` of ``VD3``.
+        """
+        ids = {row.id for row in self.all_rows}
+        found = test.row if test.row in ids else test.row.rpartition("-")[0]
+        return found if found in ids else ""
+
     def ad_hoc_test(self, sag: Sag, duration_s: float | None = None, **fields: Any) -> TestCase:
         """A test of the user's own: outside the table, so without clause and mark.
 
@@ -99,7 +111,7 @@ class Profile(Head):
             When a field is unknown or out of its range.
         """
         duration = self.sag_duration_s(sag) if duration_s is None else duration_s
-        name = f"sag-{100 * sag.depth:.6g}pct-{sag.phases}"
+        name = f"{_AD_HOC}-{100 * sag.depth:.6g}{_PERCENT}-{sag.phases}"
         scenario = make_scenario(self.procedure, sag=sag, duration_s=duration, **fields)
         return TestCase(
             id=f"{name}-two-phase" if sag.two_phase else f"{name}-type-{sag.type}" if sag.type else name,
@@ -156,6 +168,11 @@ class Profile(Head):
             if name not in kinds:
                 hint = did_you_mean(name, kinds) or f"; it has: {', '.join(kinds)}"
                 yield f"{name!r} is no requirement of this profile{hint}"
+
+
+def is_ad_hoc(test: str) -> bool:
+    """Whether an id is that of a sag of the user's own, of any depth."""
+    return re.match(rf"{_AD_HOC}-[0-9.e+-]+{_PERCENT}-", test) is not None
 
 
 def profile_of(kinds: Kinds) -> type[Profile]:

@@ -33,6 +33,10 @@ class LinearTime(Frozen):
         """Time at a voltage (s)."""
         return self.s + self.slope_s_per_pu * (u_pu - self.at_pu)
 
+    def in_words(self) -> str:
+        """The time at the voltage that it is given for, and what each further per-unit of voltage adds."""
+        return f"{self.s:g} s at {self.at_pu:g} pu, and {self.slope_s_per_pu:+g} s/pu from there"
+
 
 def _form(value: Any) -> str:
     return A_TABLE if isinstance(value, (dict, LinearTime)) else A_NUMBER

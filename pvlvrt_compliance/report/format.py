@@ -3,8 +3,9 @@
 Every function takes the texts of a language; without them it speaks English, as terminal and JUnit do.
 """
 
+from collections.abc import Iterable
 from functools import cache
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from pvlvrt_compliance.report.language import Texts
 from pvlvrt_compliance.results import JUDGED, Status, Verdict
@@ -28,6 +29,9 @@ STATUS_SYMBOL = {
 }
 """A verdict without colour; the words stand beside it everywhere."""
 
+MARK_SYMBOL = {"known": "=", "worse": "↓", "marginal": "≈"}
+"""What is to be said of a verdict besides its status, and its sign where there is no room for words."""
+
 CONFIDENCE_MEANING = {
     "confirmed": "read in the official text",
     "code": "read in source code that implements the standard",
@@ -41,6 +45,22 @@ CONFIDENCE_MEANING = {
 
 
 _BOUND_SIGNS = {None: ("", "+-"), "at_least": (">=", "-"), "at_most": ("<=", "+"), "band": ("+-", "+")}
+
+
+class AgainstBaseline(Protocol):
+    """A verdict, or several that share what their baseline says."""
+
+    @property
+    def is_known(self) -> bool:
+        """Whether it is a failure that the baseline knows."""
+
+    @property
+    def known_reason(self) -> str:
+        """Why that is lived with."""
+
+    @property
+    def worse(self) -> str:
+        """What is worse, in words."""
 
 
 class Row(NamedTuple):
@@ -127,11 +147,35 @@ def bare(text: str) -> str:
 
 
 def verdict_in_words(check: Verdict, texts: Texts | None = None) -> str:
-    """The status, and whether it is marginal."""
-    if texts is None:
-        return f"{STATUS_WORD[check.status]}{' (marginal)' if check.is_marginal else ''}"
-    word = texts.named("status", check.status)
-    return texts("limit.marginal_verdict", verdict=word) if check.is_marginal else word
+    """The status, and in parentheses whether it is known, worse than in the baseline, or marginal."""
+    return marked(STATUS_WORD[check.status] if texts is None else texts.named("status", check.status), check, texts)
+
+
+def marked(word: str, check: Verdict, texts: Texts | None = None, without: str = "") -> str:
+    """The word for a verdict with its marks behind it, but for one that is told otherwise."""
+    marks = marks_in_words((mark for mark in marks_of(check) if mark != without), texts)
+    return _texts(texts)("limit.marked_verdict", verdict=word, marks=marks) if marks else word
+
+
+def marks_of(check: Verdict) -> tuple[str, ...]:
+    """Marks of a verdict, in the order of `MARK_SYMBOL`."""
+    has = {"known": check.is_known, "worse": bool(check.worse), "marginal": check.is_marginal}
+    return tuple(mark for mark in MARK_SYMBOL if has[mark])
+
+
+def marks_in_words(marks: Iterable[str], texts: Texts | None = None) -> str:
+    """Marks in a row: ``known, marginal``."""
+    return ", ".join(_texts(texts).named("status", mark) for mark in marks)
+
+
+def baseline_in_words(of: AgainstBaseline, texts: Texts | None = None) -> str:
+    """What the baseline makes of a verdict: ``known failure: ticket 42``; nothing where it says nothing."""
+    say = _texts(texts)
+    if of.worse:
+        return say("limit.worse", words=of.worse)
+    if of.is_known:
+        return say("limit.known", reason=of.known_reason) if of.known_reason else say("limit.known_without")
+    return ""
 
 
 def state_in_words(check: Verdict, texts: Texts | None = None) -> str:

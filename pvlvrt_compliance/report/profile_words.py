@@ -1,5 +1,6 @@
 """A profile in words: every demand with its clause, every number with its unit, mark and source."""
 
+import textwrap
 from collections.abc import Iterable, Iterator
 from inspect import getdoc
 from typing import Any
@@ -10,6 +11,7 @@ from pvlvrt_compliance.data.marks import VERIFIED, Choice, Flag, Marked, Number,
 from pvlvrt_compliance.profile.curves import MarkedPoint
 from pvlvrt_compliance.profile.procedure import TestRow
 from pvlvrt_compliance.profile.profile import Profile
+from pvlvrt_compliance.profile.regions import LinearTime
 
 _UNITS = {
     "_s_per_pu": "s/pu",
@@ -22,16 +24,19 @@ _UNITS = {
     "_s": "s",
 }
 _STEP = "  "
+_FURTHER = 2 * _STEP  # what a line that goes on is indented by
 _OWN_LINE = frozenset({"clause", "source", "confidence"})
 _MOST_INLINE = 6
 
 
-def render(profile: Profile) -> str:
+def render(profile: Profile, columns: int | None = None) -> str:
     """Return the profile as plain text, one number a line.
 
     Parameters
     ----------
     profile : Profile
+    columns : int, optional
+        Width at which lines are broken between words, each going on further to the right; without it, none is.
     """
     lines = [f"{profile.id}: {profile.title}", *_indented(_head(profile)), "", *_legend(profile), "", "REQUIREMENTS"]
     for kind, requirement in profile.requirements.by_kind():
@@ -45,7 +50,17 @@ def render(profile: Profile) -> str:
     ):
         if part is not None:
             lines += ["", heading, *_indented(_content(part))]
-    return "\n".join([*lines, "", *_not_covered(profile), *_tests(profile)]) + "\n"
+    lines += ["", *_not_covered(profile), *_tests(profile, columns)]
+    return "".join(f"{line}\n" for line in (lines if columns is None else _broken(lines, columns)))
+
+
+def _broken(lines: Iterable[str], columns: int) -> Iterator[str]:
+    """The same lines, none wider than this unless by a word that is."""
+    for line in lines:
+        further = line[: len(line) - len(line.lstrip())] + _FURTHER
+        yield from textwrap.wrap(
+            line, columns, subsequent_indent=further, break_long_words=False, break_on_hyphens=False
+        ) or [""]
 
 
 def _head(profile: Profile) -> Iterator[str]:
@@ -172,11 +187,11 @@ def _quantity(value: Any, unit: str) -> str:
         case tuple():
             return " to ".join(map(str, value)) if len(value) == 2 else ", ".join(map(str, value))
         case BaseModel():
-            return f"({_inline(value, limit=False)})"
+            return value.in_words() if isinstance(value, LinearTime) else f"({_inline(value, limit=False)})"
     return str(value).replace("_", " ")
 
 
-def _tests(profile: Profile) -> Iterator[str]:
+def _tests(profile: Profile, columns: int | None) -> Iterator[str]:
     rows, runs = profile.all_rows, len(profile.tests())
     if not rows:
         yield "TESTS: none; the profile judges a sag given with --sag"
@@ -184,8 +199,18 @@ def _tests(profile: Profile) -> Iterator[str]:
     yield f"TESTS: {len(rows)} rows, {runs} runs"
     table = [("id", "what happens", "power", "demand", "mark", "clause"), *map(_row, rows)]
     widths = [max(len(line[k]) for line in table) for k in range(5)]
-    for line in table:
-        yield _STEP + "  ".join(text.ljust(width) for text, width in zip(line, [*widths, 0], strict=True)).rstrip()
+    lines = ["  ".join(text.ljust(width) for text, width in zip(line, [*widths, 0], strict=True)) for line in table]
+    if columns is None or max(map(len, lines)) + len(_STEP) <= columns:
+        yield from (f"{_STEP}{line.rstrip()}" for line in lines)
+    else:
+        yield from _one_below_the_other(table[1:])
+
+
+def _one_below_the_other(rows: Iterable[tuple[str, str, str, str, str, str]]) -> Iterator[str]:
+    """The test table where it is too wide: what happens, and below it the rest."""
+    for name, what, power, demand, mark, clause in rows:
+        yield f"{_STEP}{name}: {what.removeprefix(f'{name}: ')}"
+        yield f"{_STEP}{_STEP}{power.replace(',', ', ')}; {demand} [{mark}] {clause}"
 
 
 def _row(row: TestRow) -> tuple[str, str, str, str, str, str]:

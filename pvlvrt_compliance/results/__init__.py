@@ -8,6 +8,7 @@ from pvlvrt_compliance.measure.quantities import (
     WindowMeasurements,
 )
 from pvlvrt_compliance.results.band import Band
+from pvlvrt_compliance.results.baseline import BaselineNote, BaselineSummary
 from pvlvrt_compliance.results.details import ReportDetails
 from pvlvrt_compliance.results.drawn import Characteristic, Drawn, Instant, Spectrum, SpectrumBar
 from pvlvrt_compliance.results.profile import (
@@ -23,6 +24,7 @@ from pvlvrt_compliance.results.results import (
     Results,
     TestResult,
     conclude,
+    counts_for,
     exit_status,
 )
 from pvlvrt_compliance.results.verdict import JUDGED, UNSETTLED, Bound, Status, Verdict, worst
@@ -33,6 +35,8 @@ __all__ = [
     "UNSETTLED",
     "AppliesToSummary",
     "Band",
+    "BaselineNote",
+    "BaselineSummary",
     "Bound",
     "Characteristic",
     "ClauseSummary",
@@ -55,6 +59,7 @@ __all__ = [
     "Verdict",
     "WindowMeasurements",
     "conclude",
+    "counts_for",
     "exit_status",
     "worst",
 ]

@@ -59,3 +59,12 @@ class ProfileSummary(_Frozen):
     clauses: tuple[ClauseSummary, ...] = Field(default=(), description="every clause that the profile knows")
     notes: tuple[str, ...] = Field(default=(), description="what is not verified, a sentence each")
     left_out: tuple[str, ...] = Field(default=(), description="long tests that were not asked for, by id")
+    selected_checks: tuple[str, ...] = Field(
+        default=(), description="kinds that were judged, where only some were asked for; none: all of the profile"
+    )
+    not_selected: tuple[str, ...] = Field(
+        default=(), description="ids of the profile's tests that the selection leaves out"
+    )
+    not_run: tuple[str, ...] = Field(
+        default=(), description="ids of selected tests that were not run, since the run ended before them"
+    )

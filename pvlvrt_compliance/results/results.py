@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 from pvlvrt_compliance.disturbance.model import Disturbance
 from pvlvrt_compliance.measure.quantities import CursorStretch, MeasuredWindows
 from pvlvrt_compliance.results.band import Band
+from pvlvrt_compliance.results.baseline import BaselineSummary
 from pvlvrt_compliance.results.details import ReportDetails
 from pvlvrt_compliance.results.drawn import Characteristic, Instant, Spectrum
 from pvlvrt_compliance.results.profile import ProfileSummary
@@ -18,7 +19,14 @@ from pvlvrt_compliance.results.verdict import JUDGED, Status, Verdict, worst
 SCHEMA_VERSION = 1
 
 # When and how a run was asked for, not what it is or found.
-_NOT_FOUND: dict[str, Any] = {"allow_unjudged": True, "report": True, "provenance": {"created", "command"}}
+_NOT_FOUND: dict[str, Any] = {
+    "allow_unjudged": True,
+    "report": True,
+    "interrupted": True,
+    "baseline": True,
+    "provenance": {"created", "command", "files", "settings"},
+    "tests": {"__all__": {"wall_time_s": True, "checks": {"__all__": {"known", "known_reason", "worse"}}}},
+}
 
 
 class _Frozen(BaseModel):
@@ -67,6 +75,9 @@ class TestResult(_Frozen):
     clause: str = Field(default="", description="where the test procedure comes from")
     confidence: str = Field(default="", description="mark of the test procedure's numbers")
     duration_s: FiniteFloat = Field(default=0.0, description="length of the record")
+    wall_time_s: FiniteFloat = Field(
+        default=0.0, description="what it took to run and to judge it; 0 where that is not known or the time is fixed"
+    )
 
     @property
     def key(self) -> str:
@@ -99,6 +110,15 @@ class Results(_Frozen):
         default=False, description="whether --allow-unjudged was given, for the exit status and junit.xml"
     )
     report: ReportDetails = Field(default=ReportDetails(), description="what was given for the report")
+    ended_at: str = Field(
+        default="", description="profile and id of the test that the run ended at, the first not passed (--fail-fast)"
+    )
+    interrupted: bool = Field(
+        default=False, description="whether something ended the run before it was whole: it counts as an error"
+    )
+    baseline: BaselineSummary | None = Field(
+        default=None, description="what the run was held against, and what of that is out of date"
+    )
     profiles: tuple[ProfileSummary, ...] = ()
     provenance: dict[str, Any] = Field(default_factory=dict)
     tests: tuple[TestResult, ...] = ()
@@ -132,10 +152,16 @@ class Results(_Frozen):
 
     @property
     def counts_as(self) -> Status:
-        """The verdict that the exit status goes by: with `allow_unjudged` the worst of what could be judged."""
-        if not self.allow_unjudged or self.nothing_judged:
+        """The verdict that the exit status goes by.
+
+        With `allow_unjudged` the worst of what could be judged; what is worse than in a baseline fails, and what fails
+        there in the same way does not. A run that was interrupted has not shown what it was to show.
+        """
+        if self.interrupted:
+            return Status.ERROR
+        if self.nothing_judged:
             return self.status
-        return worst(status for status in self.counts() if status is not Status.NOT_EVALUATED)
+        return worst(counts_for(test, allow_unjudged=self.allow_unjudged) for test in self.tests)
 
 
 def conclude(
@@ -145,10 +171,14 @@ def conclude(
     *,
     allow_unjudged: bool = False,
     report: ReportDetails | None = None,
+    ended_at: str = "",
+    interrupted: bool = False,
 ) -> Results:
     """Gather tests into the result of a run, with its id.
 
     Its verdict is the worst of its tests'; where nothing applied it is `not_evaluated`, for nothing was shown.
+    ``ended_at`` is the key of the test that a run ended at before the others were run,
+    ``interrupted`` whether anything else ended it.
     """
     tests = tuple(tests)
     status = worst(test.status for test in tests)
@@ -156,11 +186,19 @@ def conclude(
         status=Status.NOT_EVALUATED if status is Status.NOT_APPLICABLE else status,
         allow_unjudged=allow_unjudged,
         report=report or ReportDetails(),
+        ended_at=ended_at,
+        interrupted=interrupted,
         tests=tests,
         profiles=tuple(profiles),
         provenance=provenance or {},
     )
     return results.model_copy(update={"run_id": _run_id(results)})
+
+
+def counts_for(test: TestResult, *, allow_unjudged: bool = False) -> Status:
+    """The worst of what the verdicts of a test count as, for the exit status of a run, as of `Results.counts_as`."""
+    own = (Verdict(check="test", status=test.status),) if test.status in (Status.ERROR, Status.NOT_EVALUATED) else ()
+    return worst(verdict.counted(allow_unjudged=allow_unjudged) for verdict in (*own, *test.checks))
 
 
 def exit_status(results: Results) -> int:

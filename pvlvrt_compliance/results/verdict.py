@@ -73,6 +73,38 @@ class Verdict(BaseModel):
     confidence: str = Field(default="", description="the weakest mark of the numbers that the verdict rests on")
     # A message may name a file, whose name need not be text.
     message: Annotated[str, BeforeValidator(all_printable)] = ""
+    known: bool = Field(default=False, description="a failure that the baseline knows, and that is no worse than there")
+    known_reason: Annotated[str, BeforeValidator(all_printable)] = Field(
+        default="", description="why it is lived with, as the baseline says"
+    )
+    worse: str = Field(
+        default="", description="what is worse than in the baseline, in words; such a verdict fails the run"
+    )
+
+    @property
+    def is_known(self) -> bool:
+        """Whether it is a failure that the baseline knows, and no worse than there."""
+        return self.known and self.status is Status.FAIL and not self.worse
+
+    @property
+    def is_worse(self) -> bool:
+        """Whether it is worse than in the baseline, though no error: it fails the run even where it has passed."""
+        return bool(self.worse) and self.status not in (Status.ERROR, Status.NOT_EVALUATED)
+
+    def counted(self, *, allow_unjudged: bool = False) -> Status:
+        """What it counts as for a gate.
+
+        An error stays one, and so does what could not be judged, unless ``allow_unjudged``: it counts as
+        `not_applicable` then. What is worse than in a baseline fails; a failure that it knows passes.
+        """
+        is_let_off = allow_unjudged and self.status is Status.NOT_EVALUATED
+        if self.status in (Status.ERROR, Status.NOT_EVALUATED) and not is_let_off:
+            return self.status
+        if self.worse:
+            return Status.FAIL
+        if is_let_off:
+            return Status.NOT_APPLICABLE
+        return Status.PASS if self.is_known else self.status
 
     @property
     def is_marginal(self) -> bool:

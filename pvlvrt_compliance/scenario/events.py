@@ -105,7 +105,7 @@ class Irradiance(_Event):
 class Recording(_Event):
     """A recorded voltage that takes the source's place from an instant on, for as long as it lasts.
 
-    A CSV file with a column ``t_s``, or a COMTRADE file (``.cfg``, extra ``comtrade``).
+    A CSV file with a column ``t_s``, or a COMTRADE file (``.cfg``).
     """
 
     kind: Literal["recording"] = "recording"

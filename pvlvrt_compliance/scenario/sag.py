@@ -2,7 +2,7 @@
 
 import cmath
 import math
-from typing import Literal, Self
+from typing import Literal, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -11,6 +11,9 @@ from pvlvrt_compliance.space_vectors import ROTATION_120, SQRT3_2, Sequences, fo
 Type = Literal["A", "B", "C", "D", "E", "F", "G"]
 PhaseNames = Literal["abc", "a", "b", "c", "ab", "bc", "ca"]
 PAIRS = ("ab", "bc", "ca")
+
+# How else phases are called: L1 to L3 in IEC 60445 (here without their L), and in older and other texts.
+_OTHER_NAMES = ("123", "rst", "uvw")
 
 # The healthy phases a, b, c are 1, a^2, a; the pair that an isolated two-phase sag pulls together leaves this one.
 _HEALTHY_OF_PAIR = {"bc": 0, "ca": 1, "ab": 2}
@@ -76,6 +79,13 @@ class Sag(BaseModel):
             kind = "isolated two-phase"
         where = "" if self.phases == "abc" else f" {self.phases}"
         return f"{kind}{where}, {100 * self.depth:g} %"
+
+
+def near_phases(text: str) -> str:
+    """Return ``'; did you mean "ca"?'`` for phases in another order or of other names, or an empty string."""
+    letters = {name: "abc"[k] for names in ("abc", *_OTHER_NAMES) for k, name in enumerate(names)}
+    named = {letters.get(letter, letter) for letter in text.casefold().replace("l", "") if letter.isalnum()}
+    return next((f'; did you mean "{known}"?' for known in get_args(PhaseNames) if set(known) == named), "")
 
 
 def through_transformer(sequences: Sequences, vector_group: str) -> Sequences:

@@ -1,8 +1,11 @@
 """One run of the plant: the grid, the weather, and the sag with its instants."""
 
+import re
 from collections import Counter
+from collections.abc import Iterator
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from pvlvrt_compliance.scenario.events import Event
 from pvlvrt_compliance.scenario.sag import Sag
@@ -10,6 +13,27 @@ from pvlvrt_compliance.units import nearest_nominal_frequency
 
 FREQUENCY_MIN_HZ = 45.0
 FREQUENCY_MAX_HZ = 66.0
+VECTOR_GROUP = re.compile(r"^(D|Y|YN)(d|y|yn)(1[01]|[0-9])$")
+
+
+def _vector_group(text: Any) -> Any:
+    """Refuse what is no vector group in words that say what one is."""
+    if not isinstance(text, str) or VECTOR_GROUP.match(text):
+        return text
+    spelled = [group for group in _spellings(text) if VECTOR_GROUP.match(group)]
+    hint = f'; did you mean "{spelled[0]}"?' if spelled else ""
+    raise ValueError(
+        f"{text!r} is no vector group; it is D, Y or YN of the sag's side, d, y or yn of the inverter's, and the hours,"
+        f" 0 to 11, that the second is behind: Dyn11 for instance{hint}"
+    )
+
+
+def _spellings(text: str) -> Iterator[str]:
+    """A vector group in other letters: which are capitals, and what is put in between, differs among writers."""
+    letters = "".join(letter for letter in text if letter.isalnum()).casefold()
+    for high in ("yn", "y", "d"):
+        if letters.startswith(high):
+            yield high.upper() + letters.removeprefix(high)
 
 
 class Scenario(BaseModel):
@@ -30,9 +54,9 @@ class Scenario(BaseModel):
     cell_temperature_c: float = Field(default=25.0, ge=-40, le=90)
     scr: float | None = Field(default=None, gt=0.5, description="short-circuit ratio on 500 kVA; none: stiff")
     xr: float = Field(default=10.0, gt=0, description="X/R of the grid impedance")
-    vector_group: str | None = Field(
+    vector_group: Annotated[str, BeforeValidator(_vector_group)] | None = Field(
         default=None,
-        pattern=r"^(D|Y|YN)(d|y|yn)(1[01]|[0-9])$",
+        pattern=VECTOR_GROUP.pattern,
         description="of the transformer beyond which sags happen, Dyn11 for instance; none: at the terminals",
     )
     reactive_power_pu: float = Field(default=0.0, ge=-1, le=1, description="set-point outside of sags, of 500 kVA")

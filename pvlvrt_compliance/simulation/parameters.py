@@ -6,13 +6,13 @@ profiles and the judging of records never pay for the compiler.
 
 import json
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Annotated, Any, Literal, get_origin
 
 from pydantic import Field, FiniteFloat, ValidationError
 
 from pvlvrt_compliance.control.parameters import ControllerParameters
-from pvlvrt_compliance.errors import UsageError, did_you_mean
+from pvlvrt_compliance.errors import UsageError, did_you_mean, near_misses
 from pvlvrt_compliance.hardware.parameters import SensorParameters
 from pvlvrt_compliance.parameter_group import ParameterGroup, Positive
 from pvlvrt_compliance.plant.parameters import PlantParameters, ProtectionParameters
@@ -80,7 +80,7 @@ def parameters_from(assignments: Iterable[str]) -> Parameters:
         if not equals:
             raise UsageError(f"--set {assignment}: write --set group.name=value")
         if name not in known:
-            raise UsageError(f"--set {name}: unknown parameter{did_you_mean(name, known)}")
+            raise UsageError(f"--set {name}: unknown parameter{_meant(name, known)}")
         group, _, key = name.partition(".")
         if key in groups.setdefault(group, {}):
             raise UsageError(f"--set {name}: given twice")
@@ -90,6 +90,21 @@ def parameters_from(assignments: Iterable[str]) -> Parameters:
         return Parameters.model_validate_json(json.dumps(groups), strict=True)
     except ValidationError as error:
         raise UsageError("; ".join(_problem(e["loc"], e["msg"]) for e in error.errors())) from None
+
+
+def _meant(name: str, known: Sequence[str]) -> str:
+    """What a name may have been meant to be: one in the group that it has, or in the group nearest to what it has."""
+    group, dot, key = name.partition(".")
+    if not dot or group in Parameters.model_fields:
+        return did_you_mean(name, known)
+    keys_of = {each: list(field.annotation.model_fields) for each, field in Parameters.model_fields.items()}  # type: ignore[union-attr]
+    groups = near_misses(group, keys_of)
+    if not groups:
+        return did_you_mean(name, known)
+    nearest = groups[0]
+    if near := near_misses(key, keys_of[nearest]):
+        return did_you_mean(name, [f"{nearest}.{each}" for each in near])
+    return f'; there is no group "{group}"; did you mean "{nearest}"?'
 
 
 OF_THE_HOST = frozenset({"computation_delay_samples"})

@@ -11,6 +11,7 @@ from pvlvrt_compliance import __version__
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.simulation.parameters import Parameters
+from pvlvrt_compliance.study.timing import FIXED_TIME
 from pvlvrt_compliance.texts import all_printable, shell_word
 
 _LIBRARIES = ("numpy", "scipy", "numba", "pydantic", "plotly")
@@ -24,13 +25,13 @@ def created_at() -> datetime:
     UsageError
         When ``SOURCE_DATE_EPOCH`` is not a number of seconds.
     """
-    text = os.environ.get("SOURCE_DATE_EPOCH")
+    text = os.environ.get(FIXED_TIME)
     if text is None:
         return datetime.now(UTC).replace(microsecond=0)
     try:
         return datetime.fromtimestamp(int(text), UTC)
     except (ValueError, OverflowError, OSError):
-        raise UsageError(f"SOURCE_DATE_EPOCH: {text!r} is not a number of seconds") from None
+        raise UsageError(f"{FIXED_TIME}: {text!r} is not a number of seconds") from None
 
 
 def provenance(
@@ -39,11 +40,14 @@ def provenance(
     command: Sequence[str] | str,
     created: datetime,
     controller: Mapping[str, Any] | None = None,
+    files: Mapping[str, Any] | None = None,
+    settings: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Everything that decides the figures of a run, as `results.json` carries it.
 
     ``command`` is the words of a command line, or a text as it is. ``controller`` says what a controller of the user's
-    own is; without, it is the bundled one.
+    own is; without, it is the bundled one. ``files`` says where in a repository its file is, and those of profiles.
+    ``settings`` says what of all that was written down in a file or the environment.
     """
     return {
         "created": created.isoformat(),
@@ -51,8 +55,10 @@ def provenance(
         "profile": ", ".join(profile.id for profile in profiles),
         "profile_digest": ", ".join(profile.digest for profile in profiles),
         **(all_printable(controller) if controller else _bundled()),
+        **({"files": all_printable(files)} if files else {}),
         "versions": _versions(),
         "parameters": parameters.model_dump(mode="json"),
+        **({"settings": all_printable(settings)} if settings else {}),
     }
 
 

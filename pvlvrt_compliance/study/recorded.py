@@ -16,6 +16,7 @@ from pvlvrt_compliance.results import Results, conclude
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.study.provenance import created_at, provenance_of_record
+from pvlvrt_compliance.study.timing import Stopwatch
 from pvlvrt_compliance.units import Nominal, nearest_nominal_frequency
 from pvlvrt_compliance.waveforms import Waveforms
 from pvlvrt_compliance.waveforms.recording import read_waveforms
@@ -53,6 +54,7 @@ def judge_recording(
     MeasurementError
         Without a test: when the record has no voltages, or nothing happens in it.
     """
+    watch = Stopwatch()
     waveforms = read_waveforms(Path(record)) if isinstance(record, str) else record
     name = Path(record).stem if isinstance(record, str) else _NO_FILE
     nominal = nominal or Nominal(frequency_hz=_frequency_hz(profile))
@@ -67,6 +69,7 @@ def judge_recording(
     result = judge_record(profile, case, evidence_of(profile, case, waveforms, nominal, available_w, disturbance))
     if test is None:
         result = result.model_copy(update={"scenario": {}})  # nobody has asked for one
+    result = result.model_copy(update={"wall_time_s": watch.elapsed_s})
     created = created_at()
     return conclude([result], [summarise(profile, [case])], provenance_of_record(profile, _origin(record), created))
 

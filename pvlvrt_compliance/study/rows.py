@@ -4,12 +4,13 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import groupby, pairwise
 
 from pvlvrt_compliance.checks.check import RowCheck
-from pvlvrt_compliance.checks.rows import connection_status, let_off, row_rule, with_check
+from pvlvrt_compliance.checks.rows import connection_status, is_judged_as_one, let_off, row_rule, with_check
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.requirements import Requirement
 from pvlvrt_compliance.results import Status, TestResult
 from pvlvrt_compliance.study.run import Judged
+from pvlvrt_compliance.study.selection import FURTHER
 
 Run = tuple[TestCase, Judged]
 
@@ -35,9 +36,9 @@ def run_rows(profile: Profile, cases: Iterable[TestCase], judge_one: Callable[[T
         In the order of the runs.
     """
     rule = row_rule(profile)
-    for row, group in groupby(cases, key=lambda case: case.row):
+    for _, group in groupby(cases, key=lambda case: case.row):
         runs = list(group)
-        if rule is None or not row or not runs[-1].judges(rule[0].kind):
+        if rule is None or not is_judged_as_one(profile, runs[-1]):
             yield from ((case, judge_one(case)) for case in runs)
         else:
             yield from _run_row(*rule, runs, judge_one)
@@ -86,10 +87,10 @@ def _run_row(
         pending = [(case, judged._replace(result=let_off(judged.result, check.kind))) for case, judged in pending]
     last_case, last = pending.pop()
     yield from pending
-    yield last_case, last._replace(result=with_check(last.result, verdict))
+    yield last_case, last._replace(result=with_check(last.result, verdict)) if last_case.judges(check.kind) else last
 
 
 def _at(case: TestCase, angle_deg: float, number: int) -> TestCase:
     scenario = case.scenario.model_copy(update={"point_on_wave_deg": angle_deg})
     title = f"{case.title.rsplit(', ', 1)[0]}, {angle_deg:g} deg (further run {number})"
-    return case.model_copy(update={"id": f"{case.row}-further-{number}", "title": title, "scenario": scenario})
+    return case.model_copy(update={"id": f"{case.row}{FURTHER}{number}", "title": title, "scenario": scenario})

@@ -5,6 +5,7 @@ from contextlib import closing, contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from pvlvrt_compliance.checks.rows import is_judged_as_one
 from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
@@ -13,6 +14,7 @@ from pvlvrt_compliance.study.job import Job
 from pvlvrt_compliance.study.named import Named
 from pvlvrt_compliance.study.opening import open_controller
 from pvlvrt_compliance.study.selection import Assignment
+from pvlvrt_compliance.study.timing import Stopwatch
 
 if TYPE_CHECKING:
     from pvlvrt_compliance.controllers.simulator import ForeignSimulator
@@ -23,6 +25,10 @@ Progress = Callable[[str, int, int], None]
 
 Keep = Callable[[Assignment, TestResult, Evidence], TestResult]
 """Keeps something of a record and says so in its result."""
+
+
+Ends = Callable[[TestResult], bool]
+"""Whether a run ends with a result."""
 
 
 class Tested(NamedTuple):
@@ -41,6 +47,7 @@ def session(
     keep: Keep | None = None,
     progress: Progress | None = None,
     controller: "ForeignSimulator | None" = None,
+    ends: Ends | None = None,
 ) -> Generator[Tested, None, None]:
     """Run a job's tests, each scenario once however many profiles judge it.
 
@@ -59,6 +66,8 @@ def session(
         Hears of each test before it is run.
     controller : ForeignSimulator, optional
         The job's controller, where it is open already.
+    ends : callable, optional
+        Says of a result whether the run ends with it: nothing is begun after it but what its row still asks for.
 
     Yields
     ------
@@ -72,17 +81,27 @@ def session(
     """
     controller = controller or open_controller(job)
     make = each.found() if each else None
-    with closing(_judged(job, controller, progress or _nobody)) as stream:
+    with closing(_judged(job, controller, progress or _nobody, ends or _never)) as stream:
         for item, judged in stream:
-            result, made, evidence = judged.result, None, judged.evidence
+            watch, result, made, evidence = Stopwatch(), judged.result, None, judged.evidence
             if evidence is not None:
                 result = keep(item, result, evidence) if keep else result
                 made = make(evidence, result) if make else None
-            yield Tested(item.profile, item.test, result, made)
+            yield Tested(item.profile, item.test, _took(result, watch), made)
+
+
+def _took(result: TestResult, watch: Stopwatch) -> TestResult:
+    """A result with the time that was spent on it besides."""
+    return result.model_copy(update={"wall_time_s": result.wall_time_s + watch.elapsed_s})
 
 
 def _nobody(_test: str, _done: int, _total: int) -> None:
     """Nobody hears of it."""
+
+
+def _never(_result: TestResult) -> bool:
+    """The run goes on whatever is found."""
+    return False
 
 
 @contextmanager
@@ -97,17 +116,17 @@ def _stopped_early(controller: "ForeignSimulator | None") -> Iterator[None]:
 
 
 def _judged(
-    job: Job, controller: "ForeignSimulator | None", progress: Progress
+    job: Job, controller: "ForeignSimulator | None", progress: Progress, ends: Ends
 ) -> "Generator[tuple[Assignment, Judged], None, None]":
     # The simulator is compiled, or read from its cache, on this import and on the first run.
     from pvlvrt_compliance.controllers.process.scratch import clear_abandoned
     from pvlvrt_compliance.simulation.simulate import simulate
     from pvlvrt_compliance.study.rows import run_rows
     from pvlvrt_compliance.study.run import run_test
-    from pvlvrt_compliance.study.sharing import SharedSimulator, rows_of, shared_together
+    from pvlvrt_compliance.study.sharing import SharedSimulator, in_turn
 
     clear_abandoned()
-    rows = shared_together(rows_of(job.tests))
+    rows = in_turn(job.tests, job.first)
     in_order = [item for row in rows for item in row]
     done = 0
     with (
@@ -117,10 +136,17 @@ def _judged(
 
         def judge_one(profile: Profile, test: TestCase) -> "Judged":
             progress(f"{profile.id} {test.id}", done, len(job.tests))
-            return run_test(profile, test, job.parameters, simulator)
+            watch = Stopwatch()  # a record may be at hand: what counts is how long the run has waited for it
+            judged = run_test(profile, test, job.parameters, simulator)
+            return judged._replace(result=_took(judged.result, watch))
 
         for row in rows:
-            profile = row[0].profile
+            profile, ended = row[0].profile, False
             for test, judged in run_rows(profile, [item.test for item in row], partial(judge_one, profile)):
                 yield Assignment(profile, test), judged
                 done += 1
+                ended = ended or ends(judged.result)
+                if ended and not is_judged_as_one(profile, test):
+                    return
+            if ended:
+                return

@@ -1,7 +1,7 @@
 """Several profiles judge one run: each scenario is simulated once."""
 
 from collections import Counter, deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Self
 
@@ -30,6 +30,16 @@ def shared_together(rows: Sequence[tuple[Assignment, ...]]) -> list[tuple[Assign
     for index, scenario in enumerate(first):
         place.setdefault(scenario, index)
     return [rows[index] for index in sorted(range(len(rows)), key=lambda index: place[first[index]])]
+
+
+def in_turn(assignments: Iterable[Assignment], first: Collection[str] = ()) -> list[tuple[Assignment, ...]]:
+    """The rows in the order in which they are run: those with one of ``first`` before the others.
+
+    What begins with the same scenario goes with them, since its record is at hand then.
+    """
+    rows = shared_together(rows_of(assignments))
+    ahead = {row[0].test.scenario for row in rows if any(item.key in first for item in row)}
+    return sorted(rows, key=lambda row: row[0].test.scenario not in ahead)
 
 
 class SharedSimulator:

@@ -13,13 +13,12 @@ from pathlib import Path
 
 from pvlvrt_compliance.errors import OutputError, UsageError, unwritable
 from pvlvrt_compliance.locks import Lock, holder_of, take_lock
-from pvlvrt_compliance.results.files import JUNIT, REPORT, REPORT_PDF, RESULTS, WAVEFORMS
+from pvlvrt_compliance.results.files import INTERRUPTED, JUNIT, ON_REQUEST, REPORT, RESULTS, WAVEFORMS
 from pvlvrt_compliance.study.placing import Placing, begun_in, in_order, remove, remove_empty
 
-INTERRUPTED = "interrupted"
-
-_VERDICTS = (REPORT_PDF, REPORT, JUNIT, RESULTS)  # results.json comes last and goes first: where it is, everything is
+_VERDICTS = (*ON_REQUEST, REPORT, JUNIT, RESULTS)  # results.json comes last and goes first: where it is, everything is
 _STAGING, _LOCK = ".unfinished-", ".unfinished.lock"
+_EMPTY_LIST = b"[]"
 _RECORD_ENDINGS = (".cfg", ".dat", ".csv")
 
 
@@ -32,6 +31,8 @@ class OutputFolder:
         As the user named it; made when it does not exist.
     spell : callable
         How whoever asks writes ``output``: a message names what he has typed.
+    files : tuple of str
+        Names of all files that may be written, in the order in which they take their places.
 
     Raises
     ------
@@ -41,8 +42,9 @@ class OutputFolder:
         When there is no room for a file.
     """
 
-    def __init__(self, folder: str, spell: Callable[[str], str] = str) -> None:
+    def __init__(self, folder: str, spell: Callable[[str], str] = str, *, files: tuple[str, ...] = _VERDICTS) -> None:
         self._asked = spell("output")
+        self._names = files
         if not folder:
             raise UsageError(f"{self._asked}: a folder is needed")
         self.folder = Path(folder)
@@ -99,6 +101,13 @@ class OutputFolder:
         with self.writing(self.staging / name):
             (self.staging / name).write_bytes(data)
 
+    def write_if_possible(self, name: str, content: str | bytes) -> None:
+        """Stage one file whole, or not at all."""
+        try:
+            self.write(name, content)
+        except OutputError:
+            (self.staging / name).unlink(missing_ok=True)
+
     def finish(self) -> None:
         """Put the staged run in the place of the one before, of which nothing stays, nor of an interrupted one.
 
@@ -142,9 +151,9 @@ class OutputFolder:
         staged = [path.relative_to(self.staging).as_posix() for path in self.staging.rglob("*") if path.is_file()]
         prefix = f"{into}/" if into else ""
         taken = {f"{prefix}{name}" for name in staged if (self.folder / into / name).is_file()}
-        own = tuple(f"{prefix}{name}" for name in _VERDICTS)
+        own = tuple(f"{prefix}{name}" for name in self._names)
         withdrawn = tuple(reversed(in_order(taken | set(replaced), own)))
-        placing = Placing(self.staging, into, withdrawn, in_order(staged, _VERDICTS))
+        placing = Placing(self.staging, into, withdrawn, in_order(staged, self._names))
         begun = False
         try:
             placing.begin()
@@ -211,7 +220,7 @@ class OutputFolder:
         OSError
             With the name of what is in the way.
         """
-        for place in (self.folder / name for name in _VERDICTS):
+        for place in (self.folder / name for name in self._names):
             if place.is_dir():
                 raise IsADirectoryError(0, "a folder is in the way", str(place))
         waveforms = self.folder / WAVEFORMS
@@ -225,9 +234,8 @@ class OutputFolder:
         root = self.folder / part
         records = _records_of(root)
         prefix = f"{part}/" if part else ""
-        verdicts = [name for name in _VERDICTS if (root / name).is_file() and (not part or records is not None)]
-        if REPORT_PDF in verdicts and not _is_of_the_run(root / REPORT_PDF):
-            verdicts.remove(REPORT_PDF)
+        verdicts = [name for name in self._names if (root / name).is_file() and (not part or records is not None)]
+        verdicts = [name for name in verdicts if name not in ON_REQUEST or _is_of_the_run(root / name)]
         found = (root / WAVEFORMS).iterdir() if records else ()
         waveforms = [f.name for f in found if f.stem in (records or ()) and f.suffix in _RECORD_ENDINGS and f.is_file()]
         return (*(f"{prefix}{name}" for name in verdicts), *(f"{prefix}{WAVEFORMS}/{name}" for name in waveforms))
@@ -245,10 +253,10 @@ def _device_of(place: Path) -> int:
 
 
 def _is_of_the_run(report: Path) -> bool:
-    """Whether a PDF, which only some runs write, is of the results beside it: it carries their id, as is."""
+    """Whether a file that only some runs write is of the results beside it: it carries their id, as is, or nothing."""
     try:
-        run_id = json.loads((report.parent / RESULTS).read_bytes())["run_id"]
-        return bool(run_id) and str(run_id).encode() in report.read_bytes()
+        run_id, content = json.loads((report.parent / RESULTS).read_bytes())["run_id"], report.read_bytes()
+        return content.strip() == _EMPTY_LIST or (bool(run_id) and str(run_id).encode() in content)
     except (OSError, ValueError, KeyError, TypeError):
         return False
 

@@ -18,6 +18,7 @@ UNITS_BY_SUFFIX = {
     "_a": "A",
     "_w": "W",
     "_var": "var",
+    "_va": "VA",
     "_hz": "Hz",
     "_pu": "pu",
     "_s": "s",
@@ -29,8 +30,14 @@ STATUS_CHANNELS = frozenset({"connected", "fault_signal"})
 """Channels that hold 0 or 1 only."""
 
 
+PURE_NUMBERS = frozenset({"m_a"})
+"""Names whose ending looks like a unit and is none: m_a modulates phase a, as m_b does phase b."""
+
+
 def unit_of(channel: str) -> str:
     """Unit of a channel from the end of its name (``u_a_v`` is in V)."""
+    if channel in PURE_NUMBERS:
+        return ""
     endings = [s for s in UNITS_BY_SUFFIX if channel.endswith(s)]
     return UNITS_BY_SUFFIX[max(endings, key=len)] if endings else ""
 

@@ -21,8 +21,7 @@ def read_recording(path: Path, channels: Sequence[str]) -> Segment:
     Raises
     ------
     UsageError
-        When the file or a channel is not there, the samples are not on a uniform grid, or the extra ``comtrade`` is
-        missing.
+        When the file or a channel is not there, or the samples are not on a uniform grid.
     """
     waveforms = read_waveforms(path, channels)
     first, last = waveforms.segments[0], waveforms.segments[-1]
@@ -88,12 +87,8 @@ def _read_csv(path: Path) -> tuple[Samples, dict[str, Samples]]:
 
 
 def _read_comtrade(path: Path) -> tuple[Samples, dict[str, Samples]]:
-    try:
-        from comtrade import Comtrade
-    except ImportError:
-        raise UsageError(
-            f"{path}: reading COMTRADE needs the extra: pip install 'pvlvrt-compliance[comtrade]'"
-        ) from None
+    from comtrade import Comtrade
+
     record = Comtrade(use_double_precision=True)
     record.load(str(path))
     named = [

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from demands import CONTROL_STEP_S
 
 from pvlvrt_compliance.checks.evaluate import errored, evaluate
 from pvlvrt_compliance.checks.summary import summarise
@@ -106,7 +107,7 @@ def _in_two(whole: Segment, at_s: float, step: int, offset_s: float = 0.0) -> Wa
 @pytest.mark.parametrize("step", [1, 2, 8])
 def test_record_in_two_segments(bench, step):
     """A record that changes its step in the judged part gets the verdicts of the whole one."""
-    made = bench(q_sag_kvar=250)
+    made = bench(q_sag_kvar=250, dt_s=CONTROL_STEP_S)
     waveforms = _in_two(made.waveforms().segments[0], 0.5, step)
     result = evaluate(made.profile, made.test, waveforms, made.nominal, 500e3)
     for check, whole in zip(result.checks, made.result().checks, strict=True):

@@ -1,15 +1,7 @@
-"""--allow-unjudged, by the installed command: what it lets pass, and what it never does."""
-
-import shutil
-import subprocess
-import sys
-from pathlib import Path
+"""--allow-unjudged: what it lets pass, and what it never does."""
 
 import pytest
 
-from waiting import PATIENCE_S
-
-COMMAND = shutil.which("pvlvrt-check", path=str(Path(sys.executable).parent))
 PROFILE = """
 schema_version = 1
 id = "my-code"
@@ -24,25 +16,20 @@ OVERFLOW = ("--set", "controller.sogi_gain=1e300")
 NOT_STARTED = ("--irradiance", "800", "--set", "controller.mppt_voltage_max_v=610")
 
 
-@pytest.mark.slow
-@pytest.mark.skipif(COMMAND is None, reason="the command is not installed beside this Python")
 @pytest.mark.parametrize(
     ("options", "plain", "allowed", "outcome"),
     [((), 3, 0, "skipped"), (TRIP, 3, 1, "skipped"), (OVERFLOW, 3, 3, "error"), (NOT_STARTED, 3, 3, "skipped")],
     ids=["passes", "a fail", "an error", "nothing judged"],
 )
-def test_exit_status_and_junit(reports, tmp_path, options, plain, allowed, outcome):
+def test_exit_status_and_junit(command, reports, tmp_path, options, plain, allowed, outcome):
     """What is unjudged no longer makes 3; a fail still makes 1, an error 3, and without any pass the end is never 0."""
     profile = tmp_path / "my-code.toml"
     profile.write_text(PROFILE, "utf-8")
     for asked, status in (((), plain), (("--allow-unjudged",), allowed)):
         folder = tmp_path / f"out{len(asked)}"
-        arguments = ["--profile", profile, "--sag", "90%", *options, *asked, "--output", folder]
-        done = subprocess.run(
-            [COMMAND, *map(str, arguments)], capture_output=True, timeout=PATIENCE_S, check=False, cwd=tmp_path
-        )
+        done = command("--profile", profile, "--sag", "90%", *options, *asked, "--output", folder)
         found = reports(folder)
-        assert done.returncode == status, done.stderr
+        assert done.status == status, done.err
         assert found.json["allow_unjudged"] is bool(asked)
         case = found.junit.find(".//testcase[@name='nobody_knows']")
         expected = outcome if asked else "error"

@@ -1,5 +1,6 @@
 """All tests of the profile in one run."""
 
+import re
 from typing import NamedTuple
 
 import pytest
@@ -123,7 +124,7 @@ def test_marks_of_the_procedures(catalogue):
     """The test table is from memory, and terminal and file say so."""
     marks = {test["id"]: test["confidence"] for test in catalogue.reports.json["tests"]}
     assert {mark for name, mark in marks.items() if name.startswith("VD")} == {"memory"}
-    assert "Not verified: tests VD1, VD2, VD3, VD4, VD5, VD6: memory" in catalogue.ended.out
+    assert re.search(r"^Not verified: .*\b\d+ memory\b", catalogue.ended.out, re.MULTILINE)
 
 
 def test_table_fits_80_columns(catalogue):

@@ -5,6 +5,33 @@ import subprocess
 import sys
 
 import pytest
+import typer
+
+from pvlvrt_compliance.cli.main import app
+from pvlvrt_compliance.results.files import BASELINE, FOLDER
+
+
+def commands(group=None, words=()):
+    """Every command and group, by the words that call it."""
+    group = group or typer.main.get_command(app)
+    yield words
+    for name, command in getattr(group, "commands", {}).items():
+        yield from commands(command, (*words, name))
+
+
+@pytest.mark.parametrize(
+    ("words", "terminal"),
+    [*((words, {}) for words in commands()), ((), {"TERM": "dumb"}), ((), {"NO_COLOR": "1"})],
+    ids=str,
+)
+def test_every_help_has_an_example_and_fits(command, words, terminal):
+    """Wherever one asks for help there is a line to begin with, within 80 columns, and no markup that was not read."""
+    ended = command(*words, "--help", **terminal)
+    assert (ended.status, ended.err) == (0, "")
+    assert f"pvlvrt-check {' '.join(words)}".strip() in " ".join(ended.out.partition("Example")[2].split())
+    assert max(map(len, ended.out.splitlines())) <= 80
+    shown = ended.out.replace("[[events]]", "")
+    assert not [mark for mark in ("\x1b", "[]", "[/", "[bold", "[[", "\\[") if mark in shown]
 
 
 def test_help_has_an_example_and_the_exit_statuses(command):
@@ -21,6 +48,11 @@ def test_help_has_an_example_and_the_exit_statuses(command):
 def test_help_fits_80_columns(command):
     """No line of the help is cut or wrapped by a terminal of 80 columns."""
     assert max(map(len, command("--help").out.splitlines())) <= 80
+
+
+def test_brackets_of_a_help_text_are_shown(command):
+    """What stands in brackets is no markup: the table of a file of events is named as it is written."""
+    assert "a TOML file with [[events]]." in " ".join(command("--help", COLUMNS="200").out.split())
 
 
 @pytest.mark.parametrize(
@@ -52,6 +84,14 @@ def test_help_of_the_schema(command):
     ended = command("schema", "--help")
     assert ended.status == 0
     assert "pvlvrt-check schema >" in ended.out
+
+
+def test_defaults_in_the_helps_are_those_of_the_code(command):
+    """Help loads no results, so it spells the names of files itself; they are the right ones."""
+    words = " ".join(command("baseline", "update", "--help", COLUMNS="200").out.split())
+    assert f"Default {BASELINE}." in words
+    assert f"Default {FOLDER}." in words
+    assert f"Default {FOLDER}." in " ".join(command("--help", COLUMNS="200").out.split())
 
 
 def test_version(command):

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
@@ -78,8 +79,35 @@ def test_interrupted_in_the_middle(paused, reports, folder, tmp_path, number, st
     assert len(kept.verdicts) == 3
     for test in kept.json["tests"]:
         assert (kept.folder / test["waveforms"]).stat().st_size > 0
-    assert kept.files == {"results.json"} | {f"waveforms/{name}.{e}" for name in kept.verdicts for e in ("cfg", "dat")}
+    records = {f"waveforms/{name}.{e}" for name in kept.verdicts for e in ("cfg", "dat")}
+    assert kept.files == {"results.json", "junit.xml"} | records
     assert list((tmp_path / "tmp").iterdir()) == []
+
+
+@POSIX
+def test_a_job_that_was_ended_shows_why_it_is_red(paused, folder, tmp_path, monkeypatch):
+    """What a CI service looks at is of what was finished, and red: files, annotations, the summary of the step."""
+    summary = tmp_path / "summary.md"
+    monkeypatch.setenv("GITHUB_ACTIONS", "true")
+    monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(summary))
+    formats = [word for name in ("github", "gitlab", "html", "pdf") for word in ("--format", name)]
+    process = paused("2", "--profile", "iec61400-21", "--waveforms", "none", *formats, "--output", folder)
+    process.send_signal(signal.SIGTERM)
+    status, out, _ = ended(process)
+    assert status == 143
+    said = "the run was interrupted: 1 of 27 tests were finished"
+    *_, last = [line for line in out.splitlines() if line.startswith("::error")]
+    assert last.startswith(f"::error title=Grid code::{said}; ")
+    place = folder / "interrupted"
+    assert {path.name for path in place.iterdir()} == {
+        "results.json",
+        "junit.xml",
+        "github-summary.md",
+        "gl-code-quality-report.json",
+    }
+    assert said in summary.read_text("utf-8")
+    case = ET.parse(place / "junit.xml").find(".//testcase[@classname='run'][@name='finished']")
+    assert case.find("error").get("message") == said
 
 
 @POSIX

@@ -2,6 +2,7 @@
 
 import importlib.metadata
 import json
+import re
 
 import comtrade
 import jsonschema
@@ -68,8 +69,12 @@ def test_readme_shows_what_the_command_prints(main_job, request):
 
 
 def test_unverified_numbers_are_named_beside_the_verdict(main_job):
-    """The envelope rests on a reading of a figure, and the terminal says so."""
-    assert "Not verified: ride_through envelope: inferred" in main_job.ended.out
+    """The envelope rests on a reading of a figure; the terminal says in one line how much is like that."""
+    (said,) = [line for line in main_job.ended.out.splitlines() if line.startswith("Not verified: ")]
+    assert re.search(r"\b\d+ inferred\b", said)
+    assert said.endswith("; see the report, or -v")
+    notes = main_job.reports.json["profiles"][0]["notes"]
+    assert sum(map(int, re.findall(r"\d+", said))) == len(notes)
 
 
 def test_files_of_the_output_folder(main_job, result):
@@ -115,6 +120,7 @@ def test_schema_allows_what_a_later_version_adds(main_job, command):
 def test_keys_that_other_programs_rely_on(main_job, result):
     """Top level, test, check and windows have the keys of the published interface."""
     top = {"schema_version", "run_id", "status", "allow_unjudged", "report", "profiles", "provenance", "tests"}
+    top |= {"baseline", "ended_at", "interrupted"}
     assert set(main_job.reports.json) == top
     assert result.keys() >= {"id", "scenario", "status", "checks", "waveforms", "measurements"}
     assert [check["check"] for check in result["checks"]] == CHECKS
@@ -122,6 +128,7 @@ def test_keys_that_other_programs_rely_on(main_job, result):
         assert set(check) == {
             *("check", "status", "measured", "limit", "margin", "unit", "at_s", "clause", "confidence", "message"),
             *("bound", "tolerance", "uncertainty", "stretch", "marginal"),
+            *("known", "known_reason", "worse"),
         }
     measured = result["measurements"]
     assert set(measured) == {"before", "during", "after", "controller"}

@@ -20,8 +20,17 @@ SIMULATES = {"simulation", "controllers", "plant", "control", "hardware", "kerne
 TOUCHES = {
     "check.py": {"study.job"},
     "running.py": {"output", "study.job", "study.running", "controllers.process"},
-    "catalogue.py": {"study.job"},
+    "completion/values.py": {
+        "study.job",
+        "study.selection",
+        "simulation.parameters",
+        "controllers.bundled",
+        "controllers.projects",
+    },
+    "catalogue.py": {"study.job", "study.selection"},
+    "compare.py": {"output", "study.comparing", "study.job", "study.overlays"},  # two results load no kernel
     "main.py": {"controllers.process"},
+    "baseline/update.py": {"study.baseline.files"},
     "controllers/inspect.py": {"controllers", "simulation.parameters"},  # which load no kernel
     "controllers/new.py": {"controllers.projects"},
     "controllers/header.py": {"controllers.library"},
@@ -51,7 +60,7 @@ def imports(path):
 
 @pytest.mark.parametrize("path", files(), ids=named)
 def test_what_a_command_may_touch(path):
-    """Only the main command runs anything; only it and the one that looks at controllers come near a simulator."""
+    """Only the main command and the comparison run anything; others than these come near no simulator or controller."""
     touched = {name for name in imports(path) if name.split(".")[0] in RUNS | SIMULATES}
     allowed = TOUCHES.get(named(path), set())
     assert all(any(f"{name}.".startswith(f"{entry}.") for entry in allowed) for name in touched), touched

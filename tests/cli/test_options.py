@@ -162,6 +162,7 @@ def test_exit_zero(judge):
     ended, reports = judge("--sag", "90%", "--set", "protection.overcurrent_pu=1.1", "--exit-zero")
     assert ended.status == 0
     assert reports.json["status"] == "fail"
+    assert "exit status 0 by --exit-zero" in " ".join(ended.out.split())
 
 
 def test_exit_zero_does_not_hide_wrong_usage(judge):
@@ -265,3 +266,11 @@ def test_list_of_selected_tests(command):
     ended = command("--profile", "iec61400-21", "--list", "--sag", "50%", "--phases", "c")
     assert "phase c, 50 %" in ended.out
     assert ended.out.splitlines()[-1] == "1 test of iec61400-21"
+
+
+def test_a_flag_can_be_taken_back(command):
+    """The last of a flag and its opposite counts as typed: ``--no-list`` runs into what only a run needs."""
+    assert "tests of iec61400-21" in command("--profile", "iec61400-21", "--list").out
+    taken_back = command("--profile", "iec61400-21", "--list", "--no-list", "--format", "nothing")
+    assert taken_back.status == 2
+    assert "--format: no format 'nothing'" in taken_back.err

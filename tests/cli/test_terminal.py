@@ -40,7 +40,7 @@ def _at_terminal(*arguments, cwd, **environment):
 @pytest.fixture(scope="module")
 def seen(tmp_path_factory):
     """Two tests at a terminal."""
-    return _at_terminal("--test", "VD3-full-*", cwd=tmp_path_factory.mktemp("terminal"))
+    return _at_terminal("--test", "VD3-full-*", "--verbose", cwd=tmp_path_factory.mktemp("terminal"))
 
 
 def test_progress_is_shown_and_taken_away(seen):
@@ -75,4 +75,4 @@ def test_no_color(tmp_path):
 def test_quiet_shows_no_bar(tmp_path):
     """--quiet is one line at a terminal, too."""
     status, text = _at_terminal("--test", "VD3-full-1", "--quiet", cwd=tmp_path, NO_COLOR="1")
-    assert (status, text.strip()) == (0, "PASS: 1 test; checks: 7 pass; 1 marginal")
+    assert (status, text.strip()) == (0, "PASS: 1 test; checks: 7 pass; 1 marginal; 26 tests not selected")

@@ -54,7 +54,7 @@ def test_no_room_for_a_report(reports, folder):
     )
     assert (folder / "report.html").read_text("utf-8") == OLD
     assert sorted(p.name for p in folder.iterdir()) == ["interrupted", "report.html"]
-    assert reports(folder / "interrupted").files == {"results.json"}
+    assert reports(folder / "interrupted").files == {"results.json", "junit.xml"}
 
 
 def test_permission_lost_while_files_are_put_in_place(command, reports, monkeypatch, folder):

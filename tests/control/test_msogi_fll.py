@@ -14,6 +14,7 @@ def vector(frequency_hz: float, seconds: float, parts: dict[int, complex]) -> np
 
 
 @pytest.mark.parametrize(("nominal_hz", "frequency_hz"), [(50, f) for f in (47, 49, 50, 51, 52)] + [(60, 57), (60, 62)])
+@pytest.mark.many_samples
 def test_it_locks_to_the_frequency_of_the_grid(track, nominal_hz, frequency_hz):
     """From its nominal frequency it finds any that a grid may have, and the voltage without error."""
     u = vector(frequency_hz, 0.5, {1: U})

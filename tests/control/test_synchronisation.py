@@ -45,6 +45,7 @@ def test_it_starts_locked(chosen, algorithm, frequency_hz):
 
 @every
 @pytest.mark.parametrize(("start_hz", "frequency_hz"), [(50, 45), (50, 47), (50, 52), (50, 55), (60, 57), (60, 62)])
+@pytest.mark.many_samples
 def test_it_locks_to_the_frequency_of_the_grid(chosen, algorithm, start_hz, frequency_hz):
     """From nominal frequency it finds another within 0.05 Hz in 110 ms, and the voltage without error."""
     u = vector(frequency_hz, 0.5, {1: U})
@@ -57,6 +58,7 @@ def test_it_locks_to_the_frequency_of_the_grid(chosen, algorithm, start_hz, freq
 
 @every
 @pytest.mark.parametrize("frequency_hz", [50, 60])
+@pytest.mark.many_samples
 def test_sequences_of_an_unbalanced_voltage_are_exact(chosen, algorithm, frequency_hz):
     """Both sequences of a sag of one phase come out with their angles, without ripple of the frequency."""
     positive, negative = 0.7 * U, 0.3 * U * np.exp(0.4j)
@@ -79,6 +81,7 @@ def test_how_fast_it_finds_the_positive_sequence(chosen, algorithm, limit_ms):
 
 
 @pytest.mark.parametrize("phase", [1, -1])
+@pytest.mark.many_samples
 def test_only_the_decoupling_network_is_free_of_harmonics(chosen, phase):
     """With 10 % of 5th and 7th the frequency of the DSOGI-FLL ripples and that of the MSOGI-FLL does not."""
     u = vector(50, 1.0, {1: U, -5: 0.1 * U, 7: 0.1 * phase * U})
@@ -91,6 +94,7 @@ def test_only_the_decoupling_network_is_free_of_harmonics(chosen, phase):
 
 
 @pytest.mark.parametrize(("algorithm", "percent"), [("srf-pll", 17.6), ("ddsrf-pll", 3.2), ("dsc-pll", 0.0)])
+@pytest.mark.many_samples
 def test_what_harmonics_do_to_the_others(chosen, algorithm, percent):
     """The largest error of u+ with 10 % of 5th and 7th in antiphase: a quarter of a cycle cancels both in u+."""
     u = vector(50, 1.0, {1: U, -5: 0.1 * U, 7: -0.1 * U})
@@ -106,6 +110,7 @@ def test_a_quarter_of_a_cycle_hands_5th_and_7th_to_the_negative_sequence(chosen)
 
 @every
 @pytest.mark.parametrize("frequency_hz", [30, 90])
+@pytest.mark.many_samples
 def test_the_estimate_stays_within_its_guard(chosen, algorithm, frequency_hz):
     """A voltage beyond 40 to 70 Hz leaves the estimate within them."""
     found = chosen(algorithm, vector(frequency_hz, 1.0, {1: U}), 50).w / (2 * np.pi)
@@ -114,6 +119,7 @@ def test_the_estimate_stays_within_its_guard(chosen, algorithm, frequency_hz):
 
 
 @every
+@pytest.mark.many_samples
 def test_without_voltage_the_estimate_stays_finite_and_guarded(chosen, algorithm):
     """A dead grid, 0/0 in every normalisation, gives no number that is not one."""
     found = chosen(algorithm, np.zeros(20000, complex), 50)

@@ -21,6 +21,7 @@ NOT_RUN: dict[str, str] = {
     f"{ENVIRONMENT} -e '.[test]' && .venv/bin/pytest": INSTALLS,
     f"{ENVIRONMENT} . && . .venv/bin/activate": INSTALLS,
     "pip install 'pvlvrt-compliance[fmi]'": INSTALLS,
+    "python -m pip wheel --quiet --no-deps --wheel-dir my-controller/wheels .": INSTALLS,
     "pvlvrt-check --controller tcp://127.0.0.1:5000 --profile iec61400-21 --sag 90%": "needs a program that listens:"
     " tests/controllers/program/ has one",
     ".venv/bin/python tests/adversary/search.py --draws 20000 --seed 1": "takes hours: tests/adversary/ draws a few",

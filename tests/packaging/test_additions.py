@@ -169,7 +169,7 @@ def test_a_command_is_shown_and_runs(tree):
 
 @pytest.mark.slow
 def test_a_format_is_written_with_every_run(tree):
-    """Its file stands beside the others, of the same run, and an interrupted one leaves none."""
+    """Its file stands beside the others, of the same run."""
     made = tree("a format")
     made.command("--profile", "iec61400-21", "--sag", "50%", "--output", "out")
     files = {path.name for path in (made.folder / "out").iterdir()}

@@ -2,20 +2,25 @@
 
 import json
 import os
+import re
+import shutil
 import subprocess
 import sys
 import tarfile
 import zipfile
+from functools import cache
 from pathlib import Path
 
 import pytest
 
+import jobs
 from pvlvrt_compliance.resources import resource_folder
 from waiting import PATIENCE_S
 
 pytestmark = pytest.mark.slow
 
 _NAME = "pvlvrt_compliance"
+ONE_TEST = {"PVLVRT_TEST": "VD2-full-1"}
 _BUILT = {".so", ".o"}
 _LEFT_BY_TOOLS = {"__pycache__", "build", ".pytest_cache", ".hypothesis"}
 
@@ -92,7 +97,22 @@ def test_wheel_has_nothing_else(wheel_files):
     tops = {name.partition("/")[0] for name in wheel_files}
     assert {top for top in tops if not top.endswith(".dist-info")} == {_NAME}
     inside = {Path(name).suffix for name in wheel_files if name.startswith(f"{_NAME}/")}
-    assert inside <= {".py", ".typed", ".toml", ".j2", ".typ", ".css", ".js", ".svg", ".c", ".h", ".md", ".yml", ""}
+    assert inside <= {
+        ".py",
+        ".typed",
+        ".toml",
+        ".j2",
+        ".typ",
+        ".css",
+        ".js",
+        ".svg",
+        ".c",
+        ".h",
+        ".md",
+        ".txt",
+        ".yml",
+        "",
+    }
     assert not any("cache" in name for name in wheel_files)
     assert any(name.endswith("/licenses/LICENSE") for name in wheel_files)
 
@@ -115,13 +135,82 @@ def test_checkout_and_sdist_give_the_same_wheel(root, wheel_files, tmp_path):
 
 
 @pytest.fixture(scope="module")
-def installed(distributions, tmp_path_factory):
-    """Folder of the programs of a fresh environment that has the wheel, and nothing of the checkout."""
+def project(distributions, root, tmp_path_factory):
+    """Begin a project that has the wheel: ``project(kind) -> folder``."""
+    folder = tmp_path_factory.mktemp("projects")
+
+    @cache
+    def project(kind):
+        new = ("controllers", "new", "--kind", kind, "--install-from", distributions[".whl"], folder / kind)
+        path = os.pathsep.join(filter(None, [str(root), os.environ.get("PYTHONPATH")]))
+        _done("env", f"PYTHONPATH={path}", sys.executable, "-m", _NAME, *new, cwd=folder)
+        return folder / kind
+
+    return project
+
+
+@pytest.fixture(scope="module")
+def first_job(project, tmp_path_factory):
+    """How each command of the job on GitHub ended, in a fresh environment; and where that has its programs."""
+    environment, folder = tmp_path_factory.mktemp("fresh") / "venv", project("python")
+    _done(sys.executable, "-m", "venv", environment, cwd=environment.parent)
+    programs = environment / ("Scripts" if os.name == "nt" else "bin")
+    job = jobs.github_job((folder / jobs.GITHUB).read_text("utf-8"), folder)
+    return jobs.run(job, folder, programs, **ONE_TEST), programs
+
+
+CUT_OFF = """
+import socket
+
+_connect, _find = socket.socket.connect, socket.getaddrinfo
+
+
+def connect(self, address):
+    if self.family in (socket.AF_INET, socket.AF_INET6) and address[0] not in ("127.0.0.1", "::1"):
+        raise OSError(f"no network: {address}")
+    return _connect(self, address)
+
+
+def getaddrinfo(host, *rest, **more):
+    if host not in (None, "localhost", "127.0.0.1", "::1"):
+        raise socket.gaierror(f"no network: {host}")
+    return _find(host, *rest, **more)
+
+
+socket.socket.connect, socket.getaddrinfo = connect, getaddrinfo
+"""
+"""A module by which an environment reaches this machine alone."""
+
+
+@pytest.fixture(scope="module")
+def wheels(distributions, tmp_path_factory):
+    """Folder of what the wheel needs, fetched where there is a network."""
+    folder = tmp_path_factory.mktemp("wheels")
+    pip = (sys.executable, "-m", "pip")
+    _done(*pip, "download", "--quiet", "--dest", folder, distributions[".whl"], cwd=folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def installed(distributions, wheels, tmp_path_factory):
+    """Folder of the programs of a fresh environment that has the wheel, nothing of the checkout, and no network."""
     environment = tmp_path_factory.mktemp("fresh") / "venv"
     _done(sys.executable, "-m", "venv", environment, cwd=environment.parent)
     programs = environment / ("Scripts" if os.name == "nt" else "bin")
-    _done(programs / "python", "-m", "pip", "install", "--quiet", distributions[".whl"], cwd=environment.parent)
+    where = (programs / "python", "-c", "import sysconfig; print(sysconfig.get_path('purelib'))")
+    site = Path(_done(*where, cwd=environment.parent).stdout.strip())
+    (site / "cut_off.py").write_text(CUT_OFF, "utf-8")
+    (site / "cut_off.pth").write_text("import cut_off\n", "utf-8")
+    pip = (programs / "python", "-m", "pip", "install", "--quiet", "--no-index", "--find-links", wheels)
+    _done(*pip, distributions[".whl"], cwd=environment.parent)
     return programs
+
+
+def test_the_environment_has_no_network(installed, tmp_path):
+    """What these tests show is shown without a network: an address elsewhere, or a name, is not reached."""
+    for address in ("203.0.113.1", "example.org"):
+        script = f"import socket; socket.create_connection(({address!r}, 80), timeout=5)"
+        assert "no network" in _call(installed / "python", "-c", script, cwd=tmp_path).stderr
 
 
 def test_main_job_from_a_wheel(installed, tmp_path):
@@ -146,14 +235,79 @@ def test_resources_of_a_wheel_are_its_own(installed, tmp_path):
     assert _done(installed / "python", "-c", script, cwd=tmp_path).stdout.strip() == "[True, True]"
 
 
-def test_project_from_a_wheel(installed, tmp_path):
-    """The installed program begins a controller in Python that passes its own gate, and prints the C header."""
-    _done(installed / "pvlvrt-check", "controllers", "new", "mine", cwd=tmp_path)
-    gate = ("--controller", "controller.py:Controller", "--profile", "iec61400-21", "--sag", "50%")
-    done = _done(installed / "pvlvrt-check", *gate, cwd=tmp_path / "mine")
-    assert "PASS: 1 test; checks: 7 pass" in done.stdout
-    header = _done(installed / "pvlvrt-check", "controllers", "header", cwd=tmp_path).stdout
-    assert "Model_Outputs" in header
+def test_first_job_of_a_project(first_job, project):
+    """The commands of the workflow, as written, install the wheel in a bare environment and find the project green."""
+    done, _ = first_job
+    assert [step.returncode for step in done] == [0, 0, 0], done[-1].stdout
+    assert "PASS: 1 test; checks: 7 pass" in done[-1].stdout
+    reports = project("python") / "pvlvrt-report"
+    assert {"report.html", "junit.xml", "results.json"} <= {file.name for file in reports.iterdir()}
+
+
+def test_job_of_another_service_uses_what_the_first_compiled(first_job, project):
+    """The script for GitLab runs in the same checkout, writes what it says it publishes, and compiles nothing anew.
+
+    There anybody may write what was checked out, as GitLab's runner has no umask.
+    """
+    _, programs = first_job
+    folder = project("python")
+    (folder / "pvlvrt.toml").chmod(0o666)
+    compiled = kept_in(folder)
+    assert compiled
+    job = jobs.gitlab_job((folder / jobs.GITLAB).read_text("utf-8"), folder)
+    (done,) = jobs.run(job, folder, programs, **ONE_TEST)
+    assert done.returncode == 0, done.stdout
+    assert kept_in(folder) == compiled
+    (published,) = jobs.loaded((folder / jobs.GITLAB).read_text("utf-8")).values()
+    for whole, _ in published["artifacts"]["reports"].values():
+        assert (folder / whole).is_file()
+
+
+def test_job_that_finds_something(first_job, project):
+    """It ends with 1 and names what failed where the service shows it; the reports are there all the same."""
+    _, programs = first_job
+    folder = project("python")
+    job = jobs.github_job((folder / jobs.GITHUB).read_text("utf-8"), folder)
+    *_, done = jobs.run(job, folder, programs, PVLVRT_SET="controller.plateau_power_pu=0.2", **ONE_TEST)
+    assert done.returncode == 1, done.stdout
+    assert re.search(r"^::error [^\n]*VD2-full-1 reactive_support", done.stdout, re.MULTILINE), done.stdout
+    assert r"| reactive\_support | fail |" in (folder.parent / jobs.STEP_SUMMARY).read_text("utf-8")
+    results = json.loads((folder / "pvlvrt-report" / "results.json").read_text("utf-8"))
+    assert results["status"] == "fail"
+
+
+@pytest.mark.compiler
+@pytest.mark.parametrize("kind", ["c", "fmu"])
+def test_jobs_of_other_kinds(first_job, project, kind):
+    """With what a runner has, a library or an FMU is built and found green."""
+    _, programs = first_job
+    folder = project(kind)
+    shutil.copytree(project("python") / ".cache", folder / ".cache")
+    job = jobs.github_job((folder / jobs.GITHUB).read_text("utf-8"), folder)
+    done = jobs.run(job, folder, programs, **ONE_TEST)
+    assert [step.returncode for step in done] == [0, 0, 0, 0], done[-1].stdout
+    assert "PASS: 1 test; checks: 7 pass" in done[-1].stdout
+
+
+def test_job_without_its_wheel(installed, tmp_path):
+    """A project that still wants its wheel says so when it is begun, and its job ends by naming the file."""
+    begun = _done(installed / "pvlvrt-check", "controllers", "new", "mine", cwd=tmp_path)
+    (wheel,) = re.findall(r"pvlvrt_compliance-\S+\.whl", begun.stderr)
+    folder = tmp_path / "mine"
+    job = jobs.gitlab_job((folder / jobs.GITLAB).read_text("utf-8"), folder)
+    (done,) = jobs.run(job, folder, installed)
+    assert done.returncode != 0
+    assert re.search(rf"No such file or directory: .*wheels/{wheel}", done.stdout), done.stdout
+
+
+def test_header_from_a_wheel(installed, tmp_path):
+    """The installed program prints the C header."""
+    assert "Model_Outputs" in _done(installed / "pvlvrt-check", "controllers", "header", cwd=tmp_path).stdout
+
+
+def kept_in(folder):
+    """Compiled files of a project and when each was written."""
+    return {str(file): file.stat().st_mtime_ns for file in (folder / ".cache" / "kernels").rglob("*.nb?")}
 
 
 def test_bad_input_from_a_wheel(installed, tmp_path):

@@ -43,6 +43,7 @@ def test_dc_overvoltage_trips_at_once(watch, v, code):
 
 
 @pytest.mark.parametrize("residual", [0.0, 0.1, 0.3, 0.5, 0.7, 0.8])
+@pytest.mark.many_samples
 def test_undervoltage_rides_through_to_the_envelope_and_not_far_beyond(watch, residual):
     """A sag that clears exactly on the envelope does not trip; one that stays trips within 60 ms after it."""
     envelope_s = 0.15 + 1.35 * residual / 0.85
@@ -57,6 +58,7 @@ def test_undervoltage_rides_through_to_the_envelope_and_not_far_beyond(watch, re
     assert 0.1 + envelope_s + 0.04 < at_s < 0.1 + envelope_s + 0.06
 
 
+@pytest.mark.many_samples
 def test_above_the_threshold_a_sag_may_last(watch):
     """0.86 pu is no sag to the relay, however long."""
     assert watch(u=0.86 * U * turning(50, 2.0)) == (None, NO_TRIP)
@@ -83,6 +85,7 @@ def test_an_unbalanced_sag_counts_by_its_positive_sequence(watch):
         (60, 65.2, FREQUENCY),
     ],
 )
+@pytest.mark.many_samples
 def test_frequency_trips_after_200_ms_outside_its_band(watch, nominal_hz, frequency_hz, code):
     """The band is 5 Hz to either side of nominal; a trip comes 200 ms after leaving it and not before."""
     at_s, found = watch(u=U * turning(frequency_hz, 0.5), frequency_hz=nominal_hz)

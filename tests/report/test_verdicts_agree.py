@@ -125,12 +125,20 @@ def test_a_run_in_which_nothing_was_judged(make_test, make_results):
     assert "Nothing was judged: no requirement passed or failed." in page.find(".//header").text_content()
 
 
+def test_an_exit_status_that_is_let_off_is_told(make_test, make_results):
+    """Only where it would have been another one."""
+    good, bad = make_results(make_test()), make_results(make_test(checks=()))
+    assert "exit-zero" not in console.summary_line(good, exit_zero=True) + console.summary_line(bad)
+    assert console.summary_line(bad, exit_zero=True).endswith("; exit status 0 by --exit-zero")
+
+
 def test_what_is_allowed_is_told(make_test, make_results):
-    """With --allow-unjudged the headline is what was found, and beside it stands what the run counts as."""
+    """With --allow-unjudged the headline is what the run counts as, with the counts of what was found beside it."""
     checks = (*make_test().checks, Verdict(check="x", status=Status.NOT_EVALUATED, message="no voltage"))
     plain = make_results(make_test(checks=checks))
     allowed = plain.model_copy(update={"allow_unjudged": True})
     assert console.summary_line(plain) == "NOT EVALUATED: 1 test; checks: 1 not evaluated, 3 pass, 1 not applicable"
-    assert console.summary_line(allowed).endswith("1 not applicable; counts as pass (--allow-unjudged)")
+    told = "1 test; checks: 1 not evaluated, 3 pass, 1 not applicable"
+    assert console.summary_line(allowed) == f"PASS by --allow-unjudged: {told}"
     assert "Counts as pass (--allow-unjudged)." in html.render(allowed, {})
     assert _in_json(allowed)[1] == _in_json(plain)[1] == "not_evaluated"

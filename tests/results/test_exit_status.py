@@ -98,3 +98,42 @@ def test_marginal_changes_neither_status_nor_exit_status():
         check = Verdict(check="x", status=status, margin=0.0, uncertainty=1.0)
         results = conclude([TestResult(id="t", status=status, checks=(check,))])
         assert (results.status, exit_status(results)) == (status, code)
+
+
+KNOWN = Verdict(check="a", status=F, known=True)
+LOST = Verdict(check="b", status=P, worse="margin +1 kvar, +5 kvar in the baseline")
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "status"),
+    [
+        ([KNOWN], 0),
+        ([KNOWN, Verdict(check="b", status=P)], 0),
+        ([KNOWN, Verdict(check="b", status=F)], 1),
+        ([LOST], 1),
+        ([KNOWN, LOST], 1),
+        ([KNOWN.model_copy(update={"worse": "margin"})], 1),
+        ([KNOWN, Verdict(check="b", status=N)], 3),
+        ([KNOWN.model_copy(update={"status": E})], 3),
+        ([KNOWN.model_copy(update={"status": N})], 3),
+    ],
+)
+def test_what_a_baseline_knows_is_no_failure_and_what_is_worse_is_one(verdicts, status):
+    """A known failure alone ends with 0; it never hides a new one, a lost margin, an error or what is unjudged."""
+    run = conclude([TestResult(id="t", status=worst(v.status for v in verdicts), checks=verdicts)])
+    assert exit_status(run) == status
+    assert run.status is worst(v.status for v in verdicts)
+
+
+def test_a_known_failure_does_not_hide_a_test_in_which_nothing_was_judged():
+    """A test of its own that is `not_evaluated` stays so, beside a known failure."""
+    empty = TestResult(id="u", status=N, checks=[Verdict(check="c", status=A)])
+    assert exit_status(conclude([TestResult(id="t", status=F, checks=[KNOWN]), empty])) == 3
+
+
+def test_how_long_it_took_and_where_it_lies_is_the_same_run():
+    """Two runs with the same findings have one id, on whichever machine and in whichever folder."""
+    test = TestResult(id="t", status=P, checks=[Verdict(check="c", status=P)])
+    quick = conclude([test], provenance={"files": {"controller": "a.py"}})
+    slow = conclude([test.model_copy(update={"wall_time_s": 12.0})])
+    assert quick.run_id == slow.run_id

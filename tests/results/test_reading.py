@@ -23,6 +23,7 @@ def test_a_result_of_the_first_version_is_read():
     for test, given in zip(results.tests, raw["tests"], strict=True):
         for verdict, written in zip(test.checks, given["checks"], strict=True):
             later = {"bound": None, "tolerance": 0.0, "uncertainty": None, "stretch": "", "marginal": False}
+            later |= {"known": False, "known_reason": "", "worse": ""}
             assert verdict.model_dump(mode="json") == later | written
         assert test.expect is None
         assert json.loads(test.measurements.model_dump_json()) == given["measurements"]

@@ -32,10 +32,16 @@ def option(name):
         ({"sag": 0.5, "irradiance": 1e4}, "irradiance", "irradiance: must be less than or equal to 1500"),
         ({"sag": 0.5, "point_on_wave": 400.0}, "point_on_wave", "point_on_wave: must be less than"),
         ({"frequency": 70.0}, "frequency", "frequency: must be less than or equal to 66"),
+        ({"frequency": "70Hz"}, "frequency", "frequency: must be less than or equal to 66"),
+        ({"frequency": "50V"}, "frequency", "frequency: '50V' is not a frequency, for its unit 'V' is none of Hz, kHz"),
         ({"frequency": float("nan")}, "frequency", "frequency: nan is not a number that can be used"),
         ({"temperature": 1e3}, "temperature", "temperature: must be"),
         ({"scr": 0.1}, "scr", "scr: must be greater than 0.5"),
-        ({"transformer": "Q"}, "transformer", "transformer: "),
+        (
+            {"transformer": "Q"},
+            "transformer",
+            "transformer: 'Q' is no vector group; it is D, Y or YN of the sag's side",
+        ),
         ({"settings": ("plant.x=1",)}, "settings", "settings plant.x: unknown parameter"),
         ({"fidelity": "best"}, "fidelity", "fidelity: "),
         ({"tests": ("VD9*",)}, "tests", "tests VD9*: no test of this name"),
@@ -69,6 +75,15 @@ def test_a_number_is_what_its_text_is():
     assert of_numbers.tests == of_texts.tests
     (item,) = of_numbers.tests
     assert (item.test.scenario.sag.depth, item.test.scenario.duration_s) == (0.9, 0.25)
+
+
+def test_a_value_with_its_unit_is_its_number():
+    """A text in the unit of its field, or in another one, asks for what the number alone asks for."""
+    of_texts = job(
+        sag=0.9, frequency="60Hz", temperature="45C", irradiance="0.5kW/m2", point_on_wave="90 deg", scr="3", xr="4.5"
+    )
+    of_numbers = job(sag=0.9, frequency=60, temperature=45, irradiance=500, point_on_wave=90, scr=3, xr=4.5)
+    assert of_texts.tests == of_numbers.tests
 
 
 def test_a_loaded_profile_is_as_good_as_its_name():
@@ -129,6 +144,15 @@ def test_parameters_of_a_controller_of_ones_own():
     found = job(controller="mine.py:Mine", settings=settings)
     assert found.given == {"gain": 2}
     assert found.parameters.plant.filter_inductance_h == 2e-4
+
+
+def test_the_bundled_controller_by_its_name():
+    """Asked for by its name it is the bundled one as without, with its parameters."""
+    made = job(profiles=["iec61400-21"], controller="bundled", settings=["controller.reactive_plateau_pu=0"])
+    assert made.controller is None
+    assert made.parameters.controller.reactive_plateau_pu == 0
+    with pytest.raises(UsageError, match="mapping is for the ports of a controller of your own"):
+        job(profiles=["iec61400-21"], controller="bundled", mapping="m.toml")
 
 
 def test_a_class_has_no_mapping():

@@ -152,3 +152,14 @@ def test_runs_are_handed_out_as_they_are_done(profile):
 
     for (case, _), expected in zip(run_rows(with_rule(profile, 2), row("1", 3), judge_one), (1, 2, 3), strict=True):
         assert len(done) == expected, case.id
+
+
+def test_a_row_of_which_only_some_checks_are_asked_for(profile):
+    """The rule lets a run off all the same; its own verdict is told where it is asked for."""
+    made = with_rule(profile, 3, 4)
+    whole, _ = outcomes(made, row("1", 3), {1: Status.FAIL})
+    for only, told in ((("dc_ripple",), False), (("repeated_runs", "ride_through"), True)):
+        results, asked = outcomes(made, row("1", 3, only=only), {1: Status.FAIL})
+        assert len(asked) == 7
+        assert results[0].checks == whole[0].checks
+        assert ("repeated_runs" in [check.check for check in results[-1].checks]) is told

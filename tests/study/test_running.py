@@ -2,6 +2,7 @@
 
 import json
 from contextlib import nullcontext
+from dataclasses import replace
 
 import pytest
 
@@ -53,7 +54,24 @@ def test_what_ends_a_run_says_what_was_kept(tmp_path, end):
     assert error.value.__notes__ == [f"1 of 2 tests were finished and are kept in {folder}/interrupted"]
     kept = json.loads((folder / "interrupted" / "results.json").read_text())
     assert [test["id"] for test in kept["tests"]] == ["VD3-full-1"]
+    assert kept["interrupted"]
+    assert {path.name for path in (folder / "interrupted").iterdir()} == {"results.json", "junit.xml", "waveforms"}
     assert [path.name for path in folder.iterdir()] == ["interrupted"]
+
+
+def test_a_format_that_fails_costs_no_finished_test(tmp_path):
+    """What ended the run may be what is wrong with a format."""
+
+    def render(*_):
+        raise RuntimeError("a format")
+
+    folder = tmp_path / "out"
+    output = output_in(str(folder), 2)
+    output = replace(output, formats={**output.formats, "junit.xml": render})
+    with pytest.raises(RuntimeError, match="a format") as error:
+        run_job(JOB, command="", output=output)
+    assert error.value.__notes__ == [f"2 of 2 tests were finished and are kept in {folder}/interrupted"]
+    assert {path.name for path in (folder / "interrupted").iterdir()} == {"results.json", "waveforms"}
 
 
 def test_what_ends_a_run_without_a_folder():

@@ -12,6 +12,7 @@ import pytest
 import small_runs
 
 from pvlvrt_compliance.errors import OutputError, UsageError
+from pvlvrt_compliance.results.files import ON_REQUEST
 from pvlvrt_compliance.study import store
 from pvlvrt_compliance.study.store import JUNIT, REPORT, RESULTS, OutputFolder
 
@@ -279,12 +280,13 @@ def test_messages_name_what_was_typed(tmp_path):
             assert str(error.value).startswith(f"{spelled}{said}")
 
 
-@pytest.mark.parametrize("text", ["%PDF of {}", "%PDF of nobody"], ids=["of the run before", "another's"])
-def test_a_pdf_goes_with_its_run(tmp_path, text):
+@pytest.mark.parametrize("name", ON_REQUEST)
+@pytest.mark.parametrize("text", ["made of {}", "of nobody"], ids=["of the run before", "another's"])
+def test_what_is_written_on_request_goes_with_its_run(tmp_path, text, name):
     """A run that writes none leaves none of the run before beside its own files; one of nobody knows whom stays."""
     output = small_runs.stage(tmp_path, "first")
-    output.write(store.REPORT_PDF, text.format(ID["first"]))
+    output.write(name, text.format(ID["first"]))
     output.finish()
     small_runs.stage(tmp_path, "second").finish()
     assert small_runs.ids(tmp_path)[RESULTS] == ID["second"]
-    assert (tmp_path / store.REPORT_PDF).exists() is (text.format("") == text)
+    assert (tmp_path / name).exists() is (text.format("") == text)

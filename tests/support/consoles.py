@@ -19,7 +19,10 @@ PROGRAM = "pvlvrt-check"
 LEFT_OUT = "..."
 
 # What a terminal or a CI service sets, and the command would rightly follow.
-_SURROUNDINGS = ("COLUMNS", "FORCE_COLOR", "NO_COLOR", "TTY_COMPATIBLE", "SOURCE_DATE_EPOCH")
+_SURROUNDINGS = (
+    *("COLUMNS", "FORCE_COLOR", "NO_COLOR", "TTY_COMPATIBLE", "SOURCE_DATE_EPOCH"),
+    *("GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY"),
+)
 _SHELLS = {"sh", "bash", "shell"}
 _BLOCK = re.compile(r"^( *)```(\w+)\n(.*?)^\1```$", re.MULTILINE | re.DOTALL)
 _SHIM = '#!/bin/sh\nexec "{python}" -m pvlvrt_compliance "$@"\n'

@@ -78,6 +78,9 @@ def test_a_missing_channel_is_named():
         ("q_ref_var", "var"),
         ("connected", ""),
         ("t_s", "s"),
+        ("apparent_power_nominal_va", "VA"),
+        ("m_a", ""),
+        ("m_b", ""),
     ],
 )
 def test_the_unit_is_in_the_name(channel, unit):

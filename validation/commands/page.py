@@ -33,6 +33,8 @@ def table(command: Any) -> str:
     """Arguments and options of a command, a table a group, as they stand in its help."""
     groups: dict[str, list[Any]] = {}
     for param in command.params:
+        if getattr(param, "hidden", False):
+            continue
         groups.setdefault(_group(param), []).append(param)
     return "\n".join("\n".join(_lines(name, params)) for name, params in groups.items()) or "It takes none.\n"
 
@@ -91,5 +93,5 @@ def _default(param: Any) -> str:
 
 
 def _words(text: str) -> str:
-    """A help text within a cell; options in it stay whole."""
-    return _OPTION.sub(r"`\g<0>`", text).replace("|", r"\|")
+    """A help text within a cell: options in it stay whole, and a bracket that is no markup is one."""
+    return _OPTION.sub(r"`\g<0>`", text.replace(r"\[", "[")).replace("|", r"\|")

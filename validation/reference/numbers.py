@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 from pydantic import BaseModel
 
 from pvlvrt_compliance.data.marks import Choice, Flag, Marked, Number, Numbers, marks_in
+from pvlvrt_compliance.profile.regions import LinearTime
 
 _UNITS = (
     ("_s_per_pu", "s/pu"),
@@ -61,7 +62,12 @@ def value_of(key: str, item: Any) -> str:
 def _row(row: BaseModel) -> str:
     """A row of a table: each key that it has, with its value and unit."""
     content = row.model_dump(exclude_none=True, exclude={"confidence", "source"})
-    return ", ".join(f"{_words(key)} {_content(value)} {unit_of(key)}".rstrip() for key, value in content.items())
+    told = []
+    for key, value in content.items():
+        whole = getattr(row, key)
+        text = whole.in_words() if isinstance(whole, LinearTime) else f"{_content(value)} {unit_of(key)}".rstrip()
+        told.append(f"{_words(key)} {text}")
+    return ", ".join(told)
 
 
 def _words(key: str) -> str:

@@ -9,7 +9,10 @@ from pvlvrt_compliance.cli.profiles.plot import plot
 from pvlvrt_compliance.cli.profiles.schema import schema
 from pvlvrt_compliance.cli.profiles.show import show
 
-app = typer.Typer(help="Grid codes: list, read, draw, check and begin them.", rich_markup_mode="rich")
+app = typer.Typer(
+    help="Grid codes: list, read, draw, check and begin them.\n\nExample: pvlvrt-check profiles list",
+    rich_markup_mode="rich",
+)
 app.command("list")(list_profiles)
 for command in (show, plot, check, schema, new):
     app.command()(command)

@@ -1,50 +1,72 @@
 """`pvlvrt-check profiles list`."""
 
-import os
+from typing import TYPE_CHECKING, Annotated, Any
 
-_WIDTH_OF_A_FILE = 240
+import typer
+
+if TYPE_CHECKING:
+    from pvlvrt_compliance.data.search_path import Known
 
 
-def list_profiles() -> int:
+def list_profiles(
+    json: Annotated[bool, typer.Option("--json", metavar="", help="For programs.")] = False,
+) -> int:
     """Show all profiles that can be named, with where each comes from.
 
     Looks in the folders of $PVLVRT_PROFILES, among the shipped ones, and in packages; the first of a name counts.
 
     Example: pvlvrt-check profiles list
     """
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
-    from pvlvrt_compliance.checks.kinds import INSTALLED_KINDS
     from pvlvrt_compliance.data.search_path import known_profiles
+
+    entries = [_entry(name, known) for name, known in known_profiles().items()]
+    if json:
+        from json import dumps
+
+        print(dumps(entries, indent=2))
+    else:
+        from pvlvrt_compliance.cli.tables import Column, print_table
+
+        columns = (
+            Column("name"),
+            Column("title", folds=True),
+            Column("tests", is_number=True),
+            Column("Hz", folds=True),
+            Column("weakest", folds=True),
+            Column("origin", folds=True),
+        )
+        print_table(columns, [_cells(entry) for entry in entries], gap=2)
+    return 2 if any(entry["problems"] for entry in entries) else 0
+
+
+def _entry(name: str, known: "Known") -> dict[str, Any]:
+    """A profile for programs; keys are only added to. Of one that cannot be read, what is wrong with it."""
+    from pvlvrt_compliance.checks.kinds import INSTALLED_KINDS
     from pvlvrt_compliance.errors import ProfileError
     from pvlvrt_compliance.profile.loading import load_profile
 
-    console = Console(highlight=False, markup=False, emoji=False)
-    if not console.is_terminal and "COLUMNS" not in os.environ:
-        console.width = _WIDTH_OF_A_FILE  # one profile a line, for grep
-    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
-    for heading in ("name", "title", "tests", "Hz", "weakest", "origin"):
-        table.add_column(heading, no_wrap=heading == "name", justify="right" if heading == "tests" else "left")
-    broken = 0
-    for name, known in known_profiles().items():
-        try:
-            profile = load_profile(str(known.path), INSTALLED_KINDS)
-        except ProfileError as error:
-            broken += 1
-            table.add_row(
-                name,
-                f"{len(error.problems)} problem{'s' * (len(error.problems) > 1)}: profiles check {name}",
-                "",
-                "",
-                "",
-                known.origin,
-            )
-            continue
-        cases = profile.tests()
-        frequencies = sorted({case.scenario.nominal_frequency_hz for case in cases})
-        hz = ", ".join(f"{frequency:g}" for frequency in frequencies)
-        table.add_row(name, profile.title, str(len(cases)), hz, profile.weakest_mark, known.origin)
-    console.print(table)
-    return 2 if broken else 0
+    of_file = {"name": name, "origin": known.origin, "file": str(known.path)}
+    try:
+        profile = load_profile(str(known.path), INSTALLED_KINDS)
+    except ProfileError as error:
+        return {**of_file, "problems": list(error.problems)}
+    cases = profile.tests()
+    return {
+        **of_file,
+        "id": profile.id,
+        "title": profile.title,
+        "tests": len(cases),
+        "frequencies_hz": sorted({case.scenario.nominal_frequency_hz for case in cases}),
+        "checks": [kind for kind, _ in profile.requirements.by_kind()],
+        "weakest": profile.weakest_mark,
+        "digest": profile.digest,
+        "problems": [],
+    }
+
+
+def _cells(entry: dict[str, Any]) -> tuple[str, ...]:
+    name, origin = entry["name"], entry["origin"]
+    if count := len(entry["problems"]):
+        return name, f"{count} problem{'s' * (count > 1)}: profiles check {name}", "", "", "", origin
+    hz = ", ".join(f"{frequency:g}" for frequency in entry["frequencies_hz"])
+    return name, entry["title"], str(entry["tests"]), hz, entry["weakest"], origin

@@ -9,7 +9,7 @@ from pvlvrt_compliance.cli.writing import write_new
 
 def new(
     name: Annotated[
-        str, typer.Argument(metavar="[NAME]", help="Writes NAME.toml; without it, prints.", show_default=False)
+        str, typer.Argument(metavar="NAME", help="Writes NAME.toml; without it, prints.", show_default=False)
     ] = "",
 ) -> None:
     """Begin a profile: a commented file that passes "profiles check".

@@ -5,17 +5,28 @@ from typing import Annotated
 
 import typer
 
+from pvlvrt_compliance.cli.completion.asking import completer
 from pvlvrt_compliance.cli.writing import write_over
 from pvlvrt_compliance.errors import unwritable
 
 
 def plot(
-    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A profile.", show_default=False)],
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="NAME|FILE", help="A profile.", show_default=False, autocompletion=completer("profiles")
+        ),
+    ],
     output: Annotated[
         str, typer.Option(metavar="FILE", help="Ends in .svg, .png or .html. Default: the profile's id, as SVG.")
     ] = "",
     scale: Annotated[
-        str, typer.Option(metavar="SCALE", help="Of the time: linear or log. Default: what fits the times.")
+        str,
+        typer.Option(
+            metavar="SCALE",
+            help="Of the time: linear or log. Default: what fits the times.",
+            autocompletion=completer("time_scales"),
+        ),
     ] = "",
 ) -> None:
     """Draw a profile's envelopes, regions and support curves.

@@ -4,9 +4,16 @@ from typing import Annotated
 
 import typer
 
+from pvlvrt_compliance.cli.completion.asking import completer
+
 
 def show(
-    name: Annotated[str, typer.Argument(metavar="NAME|FILE", help="A profile.", show_default=False)],
+    name: Annotated[
+        str,
+        typer.Argument(
+            metavar="NAME|FILE", help="A profile.", show_default=False, autocompletion=completer("profiles")
+        ),
+    ],
     json: Annotated[bool, typer.Option("--json", metavar="", help="The resolved profile, for programs.")] = False,
 ) -> None:
     """Print a profile in words: every demand with its clause, every number with its mark, every test.
@@ -20,6 +27,7 @@ def show(
     if json:
         print(profile.model_dump_json(by_alias=True, exclude_none=True, indent=2))
         return
+    from pvlvrt_compliance.cli.tables import terminal_columns
     from pvlvrt_compliance.report.profile_words import render
 
-    print(render(profile), end="")
+    print(render(profile, terminal_columns()), end="")

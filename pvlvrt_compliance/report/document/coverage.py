@@ -7,6 +7,7 @@ from functools import partial
 from typing import Literal, NamedTuple
 
 from pvlvrt_compliance.report import format as spell
+from pvlvrt_compliance.report.document.clauses import Judgement, counted, kinds_of, why_without_verdict
 from pvlvrt_compliance.report.language import Texts
 from pvlvrt_compliance.results import (
     JUDGED,
@@ -29,14 +30,6 @@ STATES: tuple[State, ...] = ("error", "not_evaluated", "fail", "pass", "not_test
 _SYMBOL = {"not_tested": "–", "not_covered": "·"}
 _OF_VOLTAGE = "ride_through"  # the requirement that envelopes and regions of the voltage are part of
 _NUMBER = re.compile(r"[+-]?\d+(\.\d+)?")
-
-
-class Judgement(NamedTuple):
-    """A verdict that speaks of a clause."""
-
-    number: int  # of the test in the report, from 1
-    test: TestResult
-    verdict: Verdict
 
 
 class CoverageRow(NamedTuple):
@@ -91,17 +84,20 @@ def _row(
     clause: ClauseSummary, profile: ProfileSummary, tests: Sequence[tuple[int, TestResult]], texts: Texts
 ) -> CoverageRow:
     own = {kind: each.clause for each in profile.clauses for kind in each.checks}
-    known = {(kind, each.clause) for each in profile.clauses for kind in _kinds(each)}
+    known = {(kind, each.clause) for each in profile.clauses for kind in kinds_of(each)}
     said = [
         Judgement(number, test, verdict)
         for number, test in tests
         for verdict in test.checks
         if _speaks_of(clause, test, verdict, own, known)
     ]
+    said, partly = counted(clause, profile, said)
     status = worst(each.verdict.status for each in said)
     state: State = "not_tested" if status is Status.NOT_APPLICABLE else _STATE_OF[status]
     at_worst = sorted((each for each in said if each.verdict.status is status), key=partial(_by_margin, texts, clause))
     reason, detail = _reason(clause, profile, tests, at_worst, texts)
+    if partly:
+        reason = texts(f"coverage.reason.{partly}")
     nearest = at_worst[0] if at_worst and status in JUDGED | UNSETTLED else None
     # Of what passed, the test that was nearest to failing is enough.
     listed = dict.fromkeys((each.number, each.test.id) for each in at_worst[: 1 if status is Status.PASS else None])
@@ -152,7 +148,7 @@ def _speaks_of(
     """
     if test.id in clause.tests:
         return True
-    if verdict.check not in _kinds(clause) or _passed_untouched(test, verdict):
+    if verdict.check not in kinds_of(clause) or _passed_untouched(test, verdict):
         return False
     if verdict.clause == test.clause and (verdict.check, verdict.clause) not in known:
         return False
@@ -170,10 +166,6 @@ def _decided(clause: ClauseSummary, judgement: Judgement) -> bool:
     """Whether the numbers of a verdict are those of a clause, rather than of another part of its requirement."""
     test, verdict = judgement.test, judgement.verdict
     return verdict.clause == clause.clause or verdict.check in clause.checks or test.id in clause.tests
-
-
-def _kinds(clause: ClauseSummary) -> set[str]:
-    return {*clause.checks, *(part.partition(".")[0] for part in clause.parts)}
 
 
 def _by_margin(texts: Texts, clause: ClauseSummary, judgement: Judgement) -> tuple[bool, bool, float, int]:
@@ -206,24 +198,7 @@ def _reason(
         commonest = _commonest(each.verdict.message for each in at_worst)
         quoted = texts("coverage.quoted", message=commonest) if commonest else ""
         return texts(f"coverage.reason.{told}", count=count), quoted
-    return texts(f"coverage.reason.{_why_without_verdict(clause, profile, tests)}"), ""
-
-
-def _why_without_verdict(
-    clause: ClauseSummary, profile: ProfileSummary, tests: Sequence[tuple[int, TestResult]]
-) -> str:
-    """Name of the reason why no verdict of a run speaks of a clause."""
-    kinds = _kinds(clause)
-    if any(verdict.check in kinds for _, test in tests for verdict in test.checks):
-        return "not_decisive"
-    if not clause.judged_tests and not clause.tests:
-        return "no_test"
-    if tests and all(test.expect is None for _, test in tests):
-        return "own_sag"
-    only_long = clause.judged_tests == clause.judged_long
-    if only_long and set(clause.tests) <= set(profile.left_out):
-        return "long"
-    return "not_selected"
+    return texts(f"coverage.reason.{why_without_verdict(clause, profile, tests)}"), ""
 
 
 def _commonest(messages: Iterable[str]) -> str:

@@ -4,9 +4,10 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from pvlvrt_compliance.report.format import number, row
+from pvlvrt_compliance.report.gate import STOPS, told_of
 from pvlvrt_compliance.report.language import Texts
 from pvlvrt_compliance.report.logo import logo_content
-from pvlvrt_compliance.report.verdicts import name_of
+from pvlvrt_compliance.report.verdicts import counts_by, name_of, part_of
 from pvlvrt_compliance.results import ProfileSummary, Results, Status, Verdict
 from pvlvrt_compliance.results.details import FIELDS, IDENTITY
 
@@ -40,7 +41,8 @@ class Front(NamedTuple):
     """What the first page says.
 
     ``worst`` has a verdict for every check with a margin, the nearest to failing first; ``failed`` are the numbers of
-    tests with a failed or erroneous verdict.
+    tests with a failed or erroneous verdict, ``red`` of those that make the run red, which a known failure does not and
+    a lost margin may.
     """
 
     tested: tuple[Fact, ...]
@@ -51,8 +53,19 @@ class Front(NamedTuple):
     marginal: tuple[Place, ...]
     unverified: int
     failed: tuple[int, ...]
+    red: tuple[int, ...]
     scope: tuple[str, ...]
     on_the_run: tuple[str, ...]
+
+    @property
+    def first_failure(self) -> int:
+        """Number of the test to look at first: what makes the run red before what is known; 0 where there is none."""
+        return next(iter(self.red or self.failed), 0)
+
+    @property
+    def failures(self) -> tuple[int, ...]:
+        """Numbers of all tests that somebody may want to look at, in order."""
+        return tuple(sorted({*self.red, *self.failed}))
 
 
 def front(results: Results, texts: Texts) -> Front:
@@ -72,6 +85,7 @@ def front(results: Results, texts: Texts) -> Front:
         marginal=tuple(place for place in places if place.verdict.is_marginal),
         unverified=sum(len(profile.notes) for profile in results.profiles),
         failed=failed(results),
+        red=red(results),
         scope=tuple(_scope(results, texts)),
         on_the_run=tuple(_on_the_run(results, texts)),
     )
@@ -81,6 +95,15 @@ def failed(results: Results) -> tuple[int, ...]:
     """Numbers of the tests in which a verdict is a failure or an error, from 1 on."""
     bad = {Status.FAIL, Status.ERROR}
     return tuple(n for n, test in enumerate(results.tests, start=1) if bad & set(test.statuses))
+
+
+def red(results: Results) -> tuple[int, ...]:
+    """Numbers of the tests that make the run red by a failure, an error or a lost margin, from 1 on."""
+    return tuple(
+        n
+        for n, test in enumerate(results.tests, start=1)
+        if any(each.outcome in STOPS and each.verdict.status is not Status.NOT_EVALUATED for each in told_of(test))
+    )
 
 
 def margin_in_words(verdict: Verdict, texts: Texts) -> str:
@@ -148,7 +171,15 @@ def _on_the_run(results: Results, texts: Texts) -> Iterator[str]:
     if results.nothing_judged:
         yield texts("front.nothing_judged")
     if results.counts_as is not results.status:
-        yield texts("front.counts_as", verdict=texts(f"status.{results.counts_as}"))
+        yield texts("front.counts_as", verdict=texts(f"status.{results.counts_as}"), by=counts_by(results))
+    part = part_of(results)
+    if part.checks:
+        yield texts("front.only_checks", checks=", ".join(texts.named("check", name) for name in part.checks))
+    if part.not_selected:
+        yield texts("front.not_selected", count=part.not_selected)
+    if part.not_run:
+        ended = texts("front.stopped_at", test=part.ended_at) if part.ended_at else texts("front.interrupted")
+        yield f"{ended} {texts('front.not_run', count=part.not_run)}"
 
 
 def _code(profile: ProfileSummary, texts: Texts) -> Iterator[Fact]:

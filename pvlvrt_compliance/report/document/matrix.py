@@ -4,6 +4,7 @@ from collections.abc import Hashable, Sequence
 from itertools import groupby, takewhile
 from typing import NamedTuple
 
+from pvlvrt_compliance.report.format import MARK_SYMBOL, marks_of
 from pvlvrt_compliance.report.verdicts import verdicts
 from pvlvrt_compliance.results import Results, Status, TestResult, worst
 
@@ -12,11 +13,19 @@ _WHOLE = "test"
 
 
 class Cell(NamedTuple):
-    """What a check has found in a test; ``status`` is the worst of its verdicts, None where it was not asked."""
+    """What a check has found in a test; ``status`` is the worst of its verdicts, None where it was not asked.
+
+    ``marks`` are those of any of its verdicts, of `MARK_SYMBOL`; it is known where all of its failures are.
+    """
 
     check: str
     status: Status | None
-    marginal: bool = False
+    marks: tuple[str, ...] = ()
+
+    @property
+    def marginal(self) -> bool:
+        """Whether one of them is marginal."""
+        return "marginal" in self.marks
 
 
 class Cells(NamedTuple):
@@ -35,14 +44,14 @@ class Run(NamedTuple):
     cells: tuple[Cell, ...]
 
     @property
-    def marginal(self) -> bool:
-        """Whether a verdict of the test is marginal."""
-        return any(cell.marginal for cell in self.cells)
+    def marks(self) -> tuple[str, ...]:
+        """What is to be said of the verdicts of the test."""
+        return _common_marks(self.cells)
 
     @property
     def columns(self) -> tuple[Cell, ...]:
         """The verdict of the whole test, then each check in the order of the matrix."""
-        return Cell(_WHOLE, self.test.status, self.marginal), *self.cells
+        return Cell(_WHOLE, self.test.status, self.marks), *self.cells
 
     @property
     def point_on_wave_deg(self) -> float | None:
@@ -133,13 +142,22 @@ def _cell(test: TestResult, check: str) -> Cell:
     found = [verdict for verdict in verdicts(test) if verdict.check == check]
     if not found:
         return Cell(check, None)
-    return Cell(check, worst(v.status for v in found), any(v.is_marginal for v in found))
+    each = [Cell(check, verdict.status, marks_of(verdict)) for verdict in found]
+    return Cell(check, worst(v.status for v in found), _common_marks(each))
 
 
 def _worst(cells: Sequence[Cell]) -> Cell:
     """One cell for several of a check."""
     found = [cell.status for cell in cells if cell.status is not None]
-    return Cell(cells[0].check, worst(found) if found else None, any(cell.marginal for cell in cells))
+    return Cell(cells[0].check, worst(found) if found else None, _common_marks(cells))
+
+
+def _common_marks(cells: Sequence[Cell]) -> tuple[str, ...]:
+    """Marks of several verdicts together."""
+    found = {mark for cell in cells for mark in cell.marks}
+    if any(cell.status is Status.FAIL and "known" not in cell.marks for cell in cells):
+        found.discard("known")
+    return tuple(mark for mark in MARK_SYMBOL if mark in found)
 
 
 def _point_on_wave(test: TestResult) -> float | None:

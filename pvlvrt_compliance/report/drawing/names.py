@@ -12,8 +12,13 @@ _WITH_NUMBERS = {
 }
 
 
+_OF_A_RUN = re.compile(r"(?P<name>.+) \((?P<run>old|new)\)")
+
+
 def curve_name(name: str, texts: Texts) -> str:
     """What a curve, an area or a set of bars is called; one that no catalogue knows keeps its name."""
+    if found := _OF_A_RUN.fullmatch(name):
+        return texts(f"comparison.overlay.curve_{found['run']}", name=curve_name(found["name"], texts))
     for kind, pattern in _WITH_NUMBERS.items():
         if found := pattern.fullmatch(name):
             values = found.groupdict()

@@ -50,7 +50,7 @@ def drawing(evidence: Evidence, result: TestResult, *, buckets: int = BUCKETS) -
     waveforms = evidence.waveforms
     span, opened_s = (waveforms.t0_s, waveforms.end_s), opened_at_s(waveforms)
     instants_s = [step.at_s for step in steps_of(result)] + ([] if opened_s is None else [opened_s])
-    parts = parts_of(grids_of(waveforms), instants_s, _cycle_s(evidence), buckets)
+    parts = parts_of(grids_of(waveforms), instants_s, cycle_of(evidence), buckets)
     over_time = (_panel(group, evidence, result, parts) for group in groups_of(evidence, result.bands))
     return Drawing(
         panels=_in_order(panel for panel in (*over_time, *_over_others(evidence, result)) if panel is not None),
@@ -79,7 +79,8 @@ def _in_order(panels: Iterable[Panel]) -> tuple[Panel, ...]:
     return tuple(found)
 
 
-def _cycle_s(evidence: Evidence) -> float:
+def cycle_of(evidence: Evidence) -> float:
+    """A cycle of the record (s)."""
     try:
         return 1 / evidence.frequency_hz
     except MeasurementError:  # no voltages to measure a frequency of
@@ -99,9 +100,9 @@ def _panel(group: Group, evidence: Evidence, result: TestResult, parts: Sequence
     happens = _happens(group, found, evidence)
     if not (lines or areas or instants or happens) or (_is_calm(group, evidence) and not happens):
         return None
-    finest = _PART_OF_THE_HEIGHT * _height(group, [samples for _, samples in found])
+    finest = _PART_OF_THE_HEIGHT * height_of(group, [samples for _, samples in found])
     for shown, samples in sorted(found, key=lambda one: not one[0].is_faint):
-        line, area = _drawn(shown, samples, parts, min(shown.fine, finest), _cycle_s(evidence))
+        line, area = drawn(shown, samples, parts, min(shown.fine, finest), cycle_of(evidence))
         curves += [line] if line else []
         bands += [area] if area else []
     if not curves and not bands:
@@ -143,7 +144,7 @@ def _happens(group: Group, found: Sequence[tuple[Shown, Samples]], evidence: Evi
     return False
 
 
-def _height(group: Group, found: Sequence[Samples]) -> float:
+def height_of(group: Group, found: Sequence[Samples]) -> float:
     """What the axis of some series reaches over, limits left out."""
     if not found:
         return 0.0
@@ -151,7 +152,7 @@ def _height(group: Group, found: Sequence[Samples]) -> float:
     return highest - (min(lowest, 0.0) if group.from_zero else lowest)
 
 
-def _drawn(
+def drawn(
     shown: Shown, samples: Samples, parts: Sequence[Part], fine: float, cycle_s: float
 ) -> tuple[Line | None, Area | None]:
     """A series as curve, as band, or as both; the curve stands in the legend if there is one."""

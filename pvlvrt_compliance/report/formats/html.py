@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 from pvlvrt_compliance.report import cursor_table, measurement_table
 from pvlvrt_compliance.report import format as spell
+from pvlvrt_compliance.report.document.baseline import against_baseline, said_of
 from pvlvrt_compliance.report.document.coverage import coverage
 from pvlvrt_compliance.report.document.front import Front, front, margin_in_words
 from pvlvrt_compliance.report.document.matrix import matrices
@@ -26,9 +27,9 @@ from pvlvrt_compliance.report.verdicts import findings, is_verified, may_decide,
 from pvlvrt_compliance.resources import resource_folder
 from pvlvrt_compliance.results import JUDGED, Results, Status, TestResult, Verdict
 from pvlvrt_compliance.results.files import REPORT
-from pvlvrt_compliance.results.verdict import UNSETTLED
 
 FILE = REPORT
+OF_WHOLE_RUNS = True
 
 _WORST = 5  # margins that the first page shows at once; the others are folded below them
 
@@ -72,21 +73,21 @@ def render(results: Results, drawings: Mapping[str, Drawing]) -> str:
     looks = Looks()
     figures = {name: figures_of(drawing, texts, looks) for name, drawing in used.items()}
     return (
-        _environment(folder, texts.language)
+        environment(folder, texts.language)
         .get_template("report.html.j2")
         .render(
             _of_run(results, texts),
             name=partial(name_of, results=results),
             figures=figures,
             plotly_packed=plotly_packed() if used else "",
-            css=_read(folder, "report.css", "figures.css", "cursors.css") + Markup(colours.style() + looks.style()),
-            js=_read(folder, "page.js"),
-            figures_js=_read(folder, "figures.js"),
+            css=read(folder, "report.css", "figures.css", "cursors.css") + Markup(colours.style() + looks.style()),
+            js=read(folder, "page.js"),
+            figures_js=read(folder, "figures.js"),
         )
     )
 
 
-def _read(folder: Path, *names: str) -> Markup:
+def read(folder: Path, *names: str) -> Markup:
     """Files of ours one after the other, as they stand."""
     return Markup("\n".join((folder / name).read_text(encoding="utf-8") for name in names))
 
@@ -111,12 +112,20 @@ def _of_run(results: Results, texts: Texts) -> dict[str, Any]:
         "row_of": {
             run.number: group.runs[0].number for table in tables for group in table.groups for run in group.runs
         },
-        "ways": _ways(first.failed),
+        "ways": _ways(first.failures),
+        "marked": _marked(results),
+        "baseline": against_baseline(results),
         "findings": findings(results),
         "number_of": {name_of(test, results): n for n, test in enumerate(results.tests, start=1)},
         "marks": _marks(results),
         "provenance": provenance_groups(results.provenance, texts),
     }
+
+
+def _marked(results: Results) -> dict[str, int]:
+    """How many verdicts have each mark, those that occur."""
+    found = [mark for finding in results.verdicts() for mark in spell.marks_of(finding.verdict)]
+    return {mark: found.count(mark) for mark in spell.MARK_SYMBOL if mark in found}
 
 
 def _folded(texts: Texts) -> dict[str, tuple[str, ...]]:
@@ -147,26 +156,30 @@ def _ways(failed: Sequence[int]) -> dict[int, _Way]:
 
 
 @cache
-def _environment(folder: Path, language: str) -> Environment:
-    """Templates with what they call, compiled once a language."""
+def environment(folder: Path, language: str) -> Environment:
+    """Templates with what all of them call, compiled once a language."""
     texts = Texts(language)
-    environment = Environment(
+    made = Environment(
         loader=FileSystemLoader(folder),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters.update(css_string=_css_string, lean=_lean)
-    environment.globals.update(
+    made.filters.update(css_string=_css_string, lean=_lean)
+    made.globals.update(
         texts=texts,
         english="" if texts.language == BASE else Markup(f' lang="{BASE}"'),
-        unsettled=UNSETTLED,
         verdicts=verdicts,
         row=partial(spell.row, texts=texts),
         is_bare=_is_bare,
         limit_in_words=partial(spell.limit_in_words, texts=texts),
         marginal_in_words=partial(spell.marginal_in_words, texts=texts),
+        said_of=partial(said_of, texts=texts),
+        baseline_in_words=partial(spell.baseline_in_words, texts=texts),
+        marks_of=spell.marks_of,
+        marks_in_words=partial(spell.marks_in_words, texts=texts),
+        mark_symbol=spell.MARK_SYMBOL,
         why=partial(_why, texts),
         margin_in_words=partial(margin_in_words, texts=texts),
         stretch_unless_told=spell.stretch_unless_told,
@@ -185,7 +198,7 @@ def _environment(folder: Path, language: str) -> Environment:
         cursor_note=cursor_table.note,
         cursor_parts=cursor_table.cursor_parts,
     )
-    return environment
+    return made
 
 
 def _lean(markup: str) -> Markup:

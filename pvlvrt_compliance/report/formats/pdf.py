@@ -11,6 +11,8 @@ from pvlvrt_compliance.results.files import REPORT_PDF
 
 FILE = REPORT_PDF
 ASKED_FOR = True
+TAKES_A_WHILE = True
+OF_WHOLE_RUNS = True
 
 
 def needs() -> None:

@@ -3,13 +3,14 @@
 from collections.abc import Iterator
 
 from pvlvrt_compliance.report import format as spell
+from pvlvrt_compliance.report.document.baseline import against_baseline, said_of
 from pvlvrt_compliance.report.document.front import Front, Place
 from pvlvrt_compliance.report.document.matrix import Matrix, Run, matrices
 from pvlvrt_compliance.report.language import Texts
 from pvlvrt_compliance.report.pdf.blocks import Block, Cell, Column, Heading, Legend, Paragraph, Section, Table
 from pvlvrt_compliance.report.pdf.codes import some_of
-from pvlvrt_compliance.report.verdicts import findings, name_of
-from pvlvrt_compliance.results import Results, Status
+from pvlvrt_compliance.report.verdicts import Finding, findings, name_of
+from pvlvrt_compliance.results import Results, Status, Verdict
 
 
 def summary_section(results: Results, first: Front, texts: Texts) -> Section:
@@ -30,6 +31,7 @@ def _summary(results: Results, first: Front, texts: Texts) -> Iterator[Block]:
     if first.marginal:
         yield _margins(first.marginal, texts)
     yield from _findings(results, texts)
+    yield from _baseline(results, texts)
 
 
 def _overview(results: Results, texts: Texts) -> Iterator[Block]:
@@ -68,16 +70,21 @@ def _margin(place: Place, texts: Texts) -> tuple[Cell, ...]:
     return (
         Cell(texts.named("check", place.verdict.check)),
         Cell(place.test, to=place.number),
-        Cell(spell.state_in_words(place.verdict, texts), status=place.verdict.status),
+        Cell(_state(place.verdict, texts), status=place.verdict.status),
         Cell(numbers.margin),
         Cell(numbers.uncertainty),
         Cell("" if share is None else spell.number(100 * share, "%", 1, sign=True)),
     )
 
 
+def _state(verdict: Verdict, texts: Texts) -> str:
+    """The verdict, and whether the baseline knows it; how near it is to the limit its row tells."""
+    return spell.marked(spell.state_in_words(verdict, texts), verdict, texts, without="marginal")
+
+
 def _findings(results: Results, texts: Texts) -> Iterator[Block]:
     yield Heading(texts("page.findings"))
-    found = [finding for finding in findings(results) if finding.status is not Status.NOT_APPLICABLE]
+    found = [finding for finding in findings(results) if finding.is_to_do]
     if not found:
         yield Paragraph(texts("pdf.no_findings"))
         return
@@ -90,7 +97,7 @@ def _findings(results: Results, texts: Texts) -> Iterator[Block]:
     numbers = {name_of(test, results): number for number, test in enumerate(results.tests, start=1)}
     rows = [
         (
-            Cell(texts.named("status", finding.status), status=finding.status),
+            Cell(_word(finding, texts), status=finding.status),
             Cell(some_of(finding.tests, texts), to=numbers[finding.tests[0]]),
             Cell(", ".join(texts.named("check", check) for check in finding.checks)),
             Cell(finding.message, english=True),
@@ -100,6 +107,40 @@ def _findings(results: Results, texts: Texts) -> Iterator[Block]:
     yield Table(columns, tuple(rows))
 
 
+def _word(finding: Finding, texts: Texts) -> str:
+    """The verdict of a finding, and whether it is known or worse than before."""
+    word = texts.named("status", finding.status)
+    mark = "known" if finding.is_known else "worse" if finding.worse else ""
+    return texts("limit.marked_verdict", verdict=word, marks=texts.named("status", mark)) if mark else word
+
+
+def _baseline(results: Results, texts: Texts) -> Iterator[Block]:
+    """What the baseline of the run makes of it."""
+    against = against_baseline(results)
+    if against is None:
+        return
+    yield Heading(texts("baseline.title"))
+    yield Paragraph(texts("baseline.means", file=against.file, share=against.share))
+    for name, each in against.parts.items():
+        yield Heading(texts(f"baseline.{name}", count=len(each)), level=3)
+        columns = (
+            Column(texts("matrix.test"), 1.0),
+            Column(texts("section.heading.check"), 1.0),
+            Column(texts("pdf.reason"), 2.4),
+        )
+        rows = [
+            (
+                Cell(said.test, to=said.number or None),
+                Cell(texts.named("check", said.check)),
+                Cell(said_of(said, texts), english=bool(said.text)),
+            )
+            for said in each
+        ]
+        yield Table(columns, tuple(rows))
+    if against.is_out_of_date:
+        yield Paragraph(texts("baseline.up_to_date"), small=True)
+
+
 def results_section(results: Results, texts: Texts) -> Section:
     """Every test and every check that applied, symbols with a legend; a table a profile."""
     return Section(texts("pdf.results"), tuple(_results(results, texts)), new_page=True)
@@ -107,7 +148,7 @@ def results_section(results: Results, texts: Texts) -> Section:
 
 def _results(results: Results, texts: Texts) -> Iterator[Block]:
     yield Paragraph(texts("pdf.results_are"))
-    yield Legend(tuple(Cell(texts.named("status", status), status=status) for status in (*Status, "marginal")))
+    yield Legend(tuple(Cell(texts.named("status", status), status=status) for status in (*Status, *spell.MARK_SYMBOL)))
     for table in matrices(results):
         yield Heading(texts("pdf.code_of", title=table.title, profile=table.profile) if table.title else table.profile)
         yield _matrix(table, texts)
@@ -118,6 +159,9 @@ def _results(results: Results, texts: Texts) -> Iterator[Block]:
         if profile.left_out:
             left_out = ", ".join(profile.left_out)
             yield Paragraph(texts("matrix.left_out", profile=profile.id, tests=left_out), small=True)
+        if profile.not_run:
+            not_run = ", ".join(profile.not_run)
+            yield Paragraph(texts("matrix.not_run", profile=profile.id, tests=not_run), small=True)
 
 
 def _matrix(table: Matrix, texts: Texts) -> Table:
@@ -133,15 +177,15 @@ def _matrix(table: Matrix, texts: Texts) -> Table:
 
 
 def _run(run: Run) -> tuple[Cell, ...]:
-    def symbol(status: Status | None, marginal: bool) -> Cell:
+    def symbol(status: Status | None, marks: tuple[str, ...]) -> Cell:
         if status is None:
             return Cell("")
-        return Cell("≈" if marginal else "", status=status)
+        return Cell("".join(spell.MARK_SYMBOL[mark] for mark in marks), status=status)
 
     return (
         Cell(run.test.id, to=run.number),
-        symbol(run.test.status, run.marginal),
-        *(symbol(cell.status, cell.marginal) for cell in run.cells),
+        symbol(run.test.status, run.marks),
+        *(symbol(cell.status, cell.marks) for cell in run.cells),
         Cell("", page=run.number),
         Cell(run.test.title, small=True, english=True),
     )

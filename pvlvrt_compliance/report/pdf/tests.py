@@ -90,7 +90,7 @@ def _verdict_rows(check: Verdict, texts: Texts) -> Iterator[tuple[Cell, ...]]:
     word = spell.state_in_words(check, texts)
     yield (
         Cell(texts.named("check", check.check), strong=True),
-        Cell(texts("limit.marginal_verdict", verdict=word) if check.is_marginal else word, status=check.status),
+        Cell(spell.marked(word, check, texts), status=check.status),
         Cell(numbers.measured),
         Cell(spell.limit_in_words(check, texts)),
         Cell(numbers.margin),
@@ -104,6 +104,8 @@ def _verdict_rows(check: Verdict, texts: Texts) -> Iterator[tuple[Cell, ...]]:
             Cell(basis, span=2, joined=True, small=True),
             Cell(message, span=5, joined=True, small=True, english=True),
         )
+    if beside := spell.baseline_in_words(check, texts):
+        yield Cell("", span=2, joined=True), Cell(beside, span=5, joined=True, small=True)
 
 
 def _measurements(test: TestResult, texts: Texts) -> Iterator[Block]:

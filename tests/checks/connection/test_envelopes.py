@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from demands import CONTROL_STEP_S
 
 from pvlvrt_compliance.checks.connection.envelopes import is_two_phase
 from pvlvrt_compliance.evidence.collect import collect
@@ -154,7 +155,8 @@ def test_the_drawn_envelope_begins_anew_where_the_judged_one_does(bench):
     The same with the tolerance lies as far below it, but not below zero.
     """
     again = {"kind": "sag", "t_s": 1.0, "duration_s": 0.2, "sag": Sag(depth=0.9)}
-    made = bench(depth=0.9, duration_s=0.2, q_sag_kvar=50, scenario={"events": [again], "after_s": 2.0})
+    scenario = {"events": [again], "after_s": 2.0}
+    made = bench(depth=0.9, duration_s=0.2, q_sag_kvar=50, scenario=scenario, dt_s=CONTROL_STEP_S)
     band, widened = (band for band in made.result().bands if band.quantity == "voltage_positive_pu")
     envelope, tolerance_pu = made.profile.envelope, made.profile.ride_through.envelope_tolerance_pu.value
     assert (band.widened, widened.widened) == (False, True)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from demands import DYNAMICS_OF_LARGE_STEPS, K_FACTOR, checks_of
+from demands import CONTROL_STEP_S, DYNAMICS_OF_LARGE_STEPS, K_FACTOR, checks_of
 
 from pvlvrt_compliance.results import Status
 
@@ -55,7 +55,7 @@ def test_activation_counts_from_the_current_before(responding, of, inside_by_s, 
     moves_by = (0.4, 0.6, 0.6)[of]
     late_s = [0.0, 0.0, 0.0]
     late_s[of] = 0.02 - 0.02 * 0.05 / moves_by - inside_by_s
-    check = responding(currents(0.4, 1.0, 0.4, tuple(late_s))).check("support_dynamics")
+    check = responding(currents(0.4, 1.0, 0.4, tuple(late_s)), dt_s=CONTROL_STEP_S).check("support_dynamics")
     assert check.status is status
     if status is Status.FAIL:
         assert "activation" in check.message

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from demands import DETECTION, DYNAMICS, RATIO
+from demands import CONTROL_STEP_S, DETECTION, DYNAMICS, RATIO
 
 from pvlvrt_compliance.checks.api import judge_alone
 from pvlvrt_compliance.checks.current.reactive_ratio import ReactiveRatioCheck
@@ -36,7 +36,7 @@ def step(delay_s: float, size_pu: float = FINAL_PU):
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_activation(timed, inside_by_s, status, sign):
     """0.05 pu of 0.5 pu have come a tenth of a cycle after the step; a current the other way counts alike."""
-    made = timed(step(0.018 - inside_by_s, sign * FINAL_PU))
+    made = timed(step(0.018 - inside_by_s, sign * FINAL_PU), dt_s=CONTROL_STEP_S)
     check = made.check("support_dynamics")
     assert check.status is status
     assert "activation" in check.message
@@ -50,7 +50,7 @@ def test_response(timed, inside_by_s, status):
     """A step from 0.1 pu to 0.5 pu brings the mean to 90 % seven eighths of a cycle later."""
     rise_s = (0.45 - 0.1) / 0.4 * CYCLE_S
     come_s = 0.05 - rise_s - inside_by_s
-    made = timed(lambda t: np.where(t >= come_s, FINAL_PU, 0.1))
+    made = timed(lambda t: np.where(t >= come_s, FINAL_PU, 0.1), dt_s=CONTROL_STEP_S)
     check = made.check("support_dynamics")
     assert check.status is status
     assert "response" in check.message
@@ -64,7 +64,8 @@ def test_settling(timed, inside_by_s, status, size_pu, edge_pu):
     activated_s = 0.05 / size_pu * CYCLE_S
     part_s = (size_pu - edge_pu) / (size_pu - FINAL_PU) * CYCLE_S
     left_s = activated_s + 0.06 - part_s - inside_by_s
-    made = timed(lambda t: np.where(t >= left_s, FINAL_PU, size_pu), changed={"response_s": 0.2})
+    late = lambda t: np.where(t >= left_s, FINAL_PU, size_pu)  # noqa: E731
+    made = timed(late, changed={"response_s": 0.2}, dt_s=CONTROL_STEP_S)
     check = made.check("support_dynamics")
     assert check.status is status
     assert "settling" in check.message
@@ -74,7 +75,7 @@ def test_settling(timed, inside_by_s, status, size_pu, edge_pu):
 @pytest.mark.parametrize(("inside_by_s", "status"), MARGINS)
 def test_times_count_from_detection(timed, inside_by_s, status):
     """V+ over a cycle is at 0.85 pu three tenths of a cycle after a sag to 0.5 pu began; the times count from there."""
-    made = timed(step(0.018 + 0.006 - inside_by_s), detection=DETECTION)
+    made = timed(step(0.018 + 0.006 - inside_by_s), detection=DETECTION, dt_s=CONTROL_STEP_S)
     check = made.check("support_dynamics")
     assert check.status is status
     assert check.margin == pytest.approx(inside_by_s, abs=0.1e-3)

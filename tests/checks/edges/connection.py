@@ -12,6 +12,7 @@ from edges.edge import (
     FREE,
     LET_OFF,
     LEVEL_PU,
+    LONG_S,
     PASS,
     RATED_KVA,
     STEP_S,
@@ -51,7 +52,7 @@ def ride_through(demand: RideThrough, profile: Profile) -> Iterator[Edge]:
         ("envelope_over_voltage", Side.HIGH),
     ):
         if (envelope := getattr(demand, name)) is not None:
-            yield from _envelope(name, envelope, side, tolerance)
+            yield from _envelope(name, envelope, side, tolerance, hz(profile))
     if demand.regions is not None:
         yield from region_edges(demand.regions, tolerance, hz(profile))
     if demand.recovery_fraction is not None and demand.recovery_time_s is not None:
@@ -98,12 +99,15 @@ def _at_level(name: str, u_pu: float, duration_s: float) -> dict[str, Any]:
     return {"duration_s": duration_s, "asked": Sag(depth=depth, phases="bc", two_phase=True)}
 
 
-def _trip(name: str, u_pu: float, at_s: float, statuses: Statuses, lasts_s: float = 0.0) -> Record:
+def _trip(name: str, u_pu: float, at_s: float, statuses: Statuses, nominal_hz: float, lasts_s: float = 0.0) -> Record:
     held_s = max(lasts_s, at_s + AWAY_S)
-    return record(statuses, p_sag_kw=50.0, disconnected_after_s=at_s, **_at_level(name, u_pu, held_s))
+    settings: dict[str, Any] = {"p_sag_kw": 50.0, "disconnected_after_s": at_s}
+    if held_s > LONG_S:
+        settings["dt_s"] = 1 / (8 * nominal_hz)
+    return record(statuses, **settings, **_at_level(name, u_pu, held_s))
 
 
-def _envelope(name: str, envelope: Envelope, side: Side, tolerance: float) -> Iterator[Edge]:
+def _envelope(name: str, envelope: Envelope, side: Side, tolerance: float, nominal_hz: float) -> Iterator[Edge]:
     """Times at each level of a corner and between two, and the levels that are not joined by a line."""
     sign = 1 if side is Side.LOW else -1
     levels = sorted({u for _, u in envelope.points})
@@ -112,14 +116,18 @@ def _envelope(name: str, envelope: Envelope, side: Side, tolerance: float) -> It
         if time_s and time_s < LONGEST_S and sign * (levels[-1] - u if side is Side.LOW else levels[0] - u) > tolerance:
             # The record goes on until the envelope has passed the voltage by more than the tolerance.
             passed_s = (envelope.time_of(u + sign * tolerance, side) or 0.0) + 0.1
-            late = _trip(name, u, time_s + STEP_S, PASS, passed_s)
-            early = _trip(name, u, time_s - STEP_S, FAIL, passed_s)
+            by_s = 2 / (8 * nominal_hz) if passed_s > LONG_S else STEP_S  # two samples
+            late = _trip(name, u, time_s + by_s, PASS, nominal_hz, passed_s)
+            early = _trip(name, u, time_s - by_s, FAIL, nominal_hz, passed_s)
             yield Edge(f"{name}: {u:g} pu for {time_s:g} s", (name,), late, early)
     for at_s, level in (found for found in _sharp_levels(envelope) if found[0] < LONGEST_S):
         edge = level - sign * tolerance
         if edge > (0.5 if name == "envelope_two_phase" else LEVEL_PU):
             by = sign * LEVEL_PU
-            beyond, within = _trip(name, edge - by, at_s, FREE), _trip(name, edge + by, at_s, FAIL)
+            beyond, within = (
+                _trip(name, edge + sign_by, at_s, statuses, nominal_hz)
+                for sign_by, statuses in ((-by, FREE), (by, FAIL))
+            )
             yield Edge(f"{name}: level {level:g} pu", (name, "envelope_tolerance_pu"), beyond, within)
 
 

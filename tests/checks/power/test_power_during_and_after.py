@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
-from demands import MARK
+from demands import CONTROL_STEP_S, MARK
 
 from pvlvrt_compliance.results import Status
 from pvlvrt_compliance.scenario.sag import Sag
 
 CYCLE_S = 0.02
-DT_S = 40.9568e-6
 RECOVERY = {
     "return_pu": 0.85,
     "first_fraction": 0.95,
@@ -60,7 +59,8 @@ def returned_s(depth: float) -> float:
 def test_first_recovery_by_depth(recovering, depth, first_s, side, status):
     """P over a cycle is at 95 % of what it was 0.95 cycles after it came back; the depth chooses the time."""
     come_s = first_s + returned_s(depth) - 0.95 * CYCLE_S - side * 1e-3
-    check = recovering(lambda t: np.where(t < come_s, 0.0, 500.0), depth=depth).check("active_power_recovery")
+    made = recovering(lambda t: np.where(t < come_s, 0.0, 500.0), depth=depth, dt_s=CONTROL_STEP_S)
+    check = made.check("active_power_recovery")
     assert check.status is status
     assert check.limit == pytest.approx(first_s)
     assert check.margin == pytest.approx(side * 1e-3, abs=0.1e-3)
@@ -157,7 +157,7 @@ def taken(size: float, from_s: float, to_s: float):
 @pytest.mark.parametrize(("side", "status"), FAIL_AND_PASS)
 def test_limits_of_the_zones(consuming, limit, channel, size, span_s, at_s, side, status):
     """Each limit is kept by 0.5 % less than it allows and broken by 0.5 % more."""
-    made = consuming((limit,), **{channel: taken(size * (1 - 0.005 * side), *span_s)})
+    made = consuming((limit,), dt_s=CONTROL_STEP_S, **{channel: taken(size * (1 - 0.005 * side), *span_s)})
     check = made.check("consumption")
     assert check.status is status
     assert check.margin == pytest.approx(side * 0.005 * check.limit, abs=1e-3 * check.limit)
@@ -175,9 +175,9 @@ def test_limits_of_the_zones(consuming, limit, channel, size, span_s, at_s, side
 )
 def test_other_zones_do_not_count(consuming, limit, channel, span_s):
     """What is taken outside of a zone is not the zone's, but for the half sample that a step may fall in."""
-    check = consuming(limit, **{channel: taken(1000, *span_s)}).check("consumption")
+    check = consuming(limit, dt_s=CONTROL_STEP_S, **{channel: taken(1000, *span_s)}).check("consumption")
     assert check.status is Status.PASS
-    assert check.measured == pytest.approx(0, abs=1000 * 0.5 * DT_S / CYCLE_S)
+    assert check.measured == pytest.approx(0, abs=1000 * 0.5 * CONTROL_STEP_S / CYCLE_S)
 
 
 def test_what_is_fed_makes_up_for_nothing(consuming):

@@ -28,7 +28,7 @@ def test_a_cell_is_the_worst_of_its_verdicts():
         ("a", FAIL, True),
         ("b", PASS, False),
     ]
-    assert matrix.runs[0].marginal
+    assert matrix.runs[0].marks == ("marginal",)
 
 
 def test_a_check_that_was_not_asked_leaves_its_cell_empty():

@@ -5,6 +5,7 @@ import sys
 import pytest
 
 from pvlvrt_compliance.report import formats
+from pvlvrt_compliance.results.files import ON_REQUEST
 from pvlvrt_compliance.study import store
 
 
@@ -21,13 +22,15 @@ def one_more(tmp_path, monkeypatch):
 def test_the_files_of_a_run():
     """Each has a name of its own, and the output folder knows them all."""
     files = [form.file for form in formats.formats()]
-    assert sorted(files) == sorted({store.REPORT, store.REPORT_PDF, store.JUNIT, store.RESULTS})
+    assert sorted(files) == sorted({store.REPORT, store.JUNIT, store.RESULTS, *ON_REQUEST})
 
 
 def test_what_is_asked_for_by_name_is_not_always_written():
     """A run without options needs no library besides the core."""
-    assert {form.file for form in formats.chosen_formats(())} == {store.REPORT, store.JUNIT, store.RESULTS}
-    assert store.REPORT_PDF in {form.file for form in formats.chosen_formats(("pdf",))}
+    always = {store.REPORT, store.JUNIT, store.RESULTS}
+    assert {form.file for form in formats.chosen_formats(())} == always
+    for form in formats.formats():
+        assert {each.file for each in formats.chosen_formats((form.name,))} == always | {form.file}
 
 
 def test_each_makes_text_or_bytes_of_results_and_drawings(make_test, make_results, make_drawing):

@@ -5,6 +5,7 @@ import io
 import pypdf
 import pytest
 
+from baselines import held
 from pvlvrt_compliance.report.formats import html
 from pvlvrt_compliance.results import ReportDetails, Status, Verdict
 
@@ -177,6 +178,17 @@ def test_a_filter_holds_in_all_places(visit, page):
     seen.check("[name=status][value=failed]", force=True)
     seen.reload()
     assert _tests_shown(seen) == FILTERS["failed"]
+
+
+def test_what_is_known_is_filtered_from_what_is_new_or_worse(visit, results, page):
+    """With a baseline there is a filter more, also on a phone, where nothing reaches beyond the window."""
+    known = f"{results.tests[1].key} ride_through fail -0.2 pu # {EVIL}"
+    lost = f"{results.tests[2].key} overfrequency_power pass +0.5 pu"
+    seen = visit(html.render(held(results, known, lost), {}), "#status=news", **PHONE)
+    assert _tests_shown(seen) == {"marginal", "late"}
+    assert _beyond_the_window(seen) == []
+    assert EVIL in seen.text_content("[aria-labelledby=baseline]")
+    assert _tests_shown(visit(page, "#status=news")) == FILTERS["all"]  # none without a baseline
 
 
 def test_check_and_text_filter_too(visit, page):
