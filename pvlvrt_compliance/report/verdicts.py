@@ -161,7 +161,7 @@ def _held_against(baseline: BaselineSummary) -> str:
 def counts_by(results: Results) -> str:
     """The options by which a run counts as something else than its verdict, or that it was interrupted."""
     if results.interrupted:
-        return "interrupted"
+        return "an interruption"
     found = [finding.verdict for finding in results.verdicts()]
     by = ["--allow-unjudged"] if results.allow_unjudged and Status.NOT_EVALUATED in results.counts() else []
     if results.baseline and any(verdict.known or verdict.worse for verdict in found):
