@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from pvlvrt_compliance.data.positions import Location
 from pvlvrt_compliance.data.reader import Kind, Source
+from pvlvrt_compliance.data.repository import begins_repository
 from pvlvrt_compliance.data.syntax import Table
 from pvlvrt_compliance.errors import UsageError, listed
 from pvlvrt_compliance.settings import FILE, PROJECT_FILE
@@ -16,7 +17,6 @@ TABLE = ("tool", "pvlvrt")
 """Keys of the table in a `PROJECT_FILE`."""
 
 _KIND = Kind("a settings file", "settings files", lambda origin, problems: UsageError(listed(origin, problems)))
-_REPOSITORY = ".git"
 
 
 class Taken(NamedTuple):
@@ -134,7 +134,7 @@ def _folders(start: Path) -> Iterator[tuple[Path, str]]:
     except (RuntimeError, OSError):
         home = None
     for folder in (start, *start.parents):
-        is_root = os.path.lexists(folder / _REPOSITORY)
+        is_root = begins_repository(folder)
         if is_root or folder == home:
             yield folder, "the root of the repository" if is_root else "the home folder"
             return

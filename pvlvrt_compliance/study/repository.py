@@ -4,13 +4,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-_MARK = ".git"  # a folder, in a work tree or a submodule a file
+from pvlvrt_compliance.data.repository import begins_repository
 
 
 def repository_of(folder: Path) -> Path | None:
     """Root of the repository that a folder lies in, by the nearest ``.git`` upwards; None where there is none."""
     absolute = folder.resolve()
-    return next((place for place in (absolute, *absolute.parents) if (place / _MARK).exists()), None)
+    return next((place for place in (absolute, *absolute.parents) if begins_repository(place)), None)
 
 
 def places_in_repository(named: Mapping[str, str]) -> dict[str, str]:
