@@ -1,4 +1,4 @@
-"""Times the compiled loop of the package beside a C twin of the same equations, then the main command.
+"""Times the compiled loop of the package beside a C twin of the same equations.
 
 The twin is built into a temporary folder and must first give the package's waveforms. Exit status 1 when it does not,
 or when a limit is given and exceeded; 2 without a C compiler.
@@ -6,7 +6,6 @@ or when a limit is given and exceeded; 2 without a C compiler.
 
 import argparse
 import statistics
-import subprocess
 import sys
 import tempfile
 import time
@@ -16,11 +15,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from agreement import TOLERANCE, differences
+from row import Row
 from twin import SCENARIOS, Arguments, Twin, arguments_of, compiler
 
 from pvlvrt_compliance.simulation import loop
 
-_MAIN_COMMAND = Path(__file__).resolve().with_name("main_command.py")
 _PAIRS_MIN = 10
 
 
@@ -80,6 +79,33 @@ def print_timing(timing: Timing) -> None:
     print(f"  ratio of the medians {timing.ratio_of_medians:.2f}, median of the ratios {timing.median_ratio:.2f}")
 
 
+def rows(pairs: int) -> Iterator[Row]:
+    """Row of the table; none without a C compiler.
+
+    Raises
+    ------
+    RuntimeError
+        When package and twin do not give the same waveforms: their times say nothing then.
+    """
+    if compiler() is None:
+        return
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        twin = Twin(Path(folder))
+        if problems := list(unequal_waveforms(twin)):
+            raise RuntimeError("; ".join(problems))
+        timing = time_pairs(twin, pairs)
+    yield Row(
+        "compiled loop against its C twin, a plant step",
+        [a / b for a, b in zip(timing.package, timing.twin, strict=True)],
+        "x",
+        must=1.1,
+        stretch=1.0,
+        reference="C twin, gcc -O3 -march=native",
+        reference_values=timing.twin,
+        reference_unit="ns",
+    )
+
+
 def options(arguments: Sequence[str] | None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(
@@ -89,7 +115,6 @@ def options(arguments: Sequence[str] | None) -> argparse.Namespace:
     )
     parser.add_argument("--pairs", type=int, default=20, help="timed runs of each, in turn (default 20, at least 10)")
     parser.add_argument("--limit", type=float, help="exit with status 1 when the median of the ratios is above it")
-    parser.add_argument("--no-command", action="store_true", help="leave the main command out")
     chosen = parser.parse_args(arguments)
     if chosen.pairs < _PAIRS_MIN:
         parser.error(f"--pairs must be at least {_PAIRS_MIN}")
@@ -111,10 +136,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     print_timing(timing)
     if chosen.limit is not None and timing.median_ratio > chosen.limit:
         problems.append(f"the package takes {timing.median_ratio:.2f} times as long as C, more than {chosen.limit:g}")
-    if not chosen.no_command:
-        # In a process of its own: a child's peak memory is at least what the process that starts it holds.
-        sys.stdout.flush()
-        subprocess.run([sys.executable, str(_MAIN_COMMAND)], check=False)
     for problem in problems:
         print(problem, file=sys.stderr)
     return 1 if problems else 0

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from pvlvrt_compliance.waveforms import Segment, Waveforms
     from pvlvrt_compliance.waveforms.recording import read_waveforms
 
-    __version__: str
+__version__ = "0.2.0"  # that of the distribution, too: asking what is installed takes longer than Python's start
 
 __all__ = [
     "Comparison",
@@ -77,14 +77,9 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    if name == "__version__":
-        from importlib.metadata import version
-
-        found: Any = version("pvlvrt-compliance")
-    elif name in _HOMES:
-        found = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
-    else:
+    if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    found: Any = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
     globals()[name] = found
     return found
 

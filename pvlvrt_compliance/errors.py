@@ -39,16 +39,32 @@ class SimulationError(PvlvrtError):
     """A simulation ended without usable waveforms (that test becomes `error`, exit status 3)."""
 
 
-class OutputError(PvlvrtError):
+class UnfinishedError(PvlvrtError):
+    """A run cannot go on to its end; what is finished is kept (exit status 3)."""
+
+
+class OutputError(UnfinishedError):
     """A file cannot be written though its place is a right one (exit status 3)."""
+
+
+class LostError(UnfinishedError):
+    """What runs the tests is gone before all of them are run (exit status 3)."""
 
 
 class MeasurementError(PvlvrtError):
     """A quantity cannot be measured on the waveforms given (that check becomes `not_evaluated`)."""
 
 
-class CompiledCodeWarning(UserWarning):
-    """Compiled code is not kept, or what was kept is damaged: that costs time and changes no verdict."""
+class KeptFileWarning(UserWarning):
+    """Something is not kept from one run to the next, or is damaged: that costs time and changes no verdict."""
+
+
+class StoredRecordWarning(KeptFileWarning):
+    """Records are not kept, or what was kept is damaged."""
+
+
+class CompiledCodeWarning(KeptFileWarning):
+    """Compiled code is not kept, or what was kept is damaged."""
 
 
 def listed(origin: str, problems: Sequence[str]) -> str:

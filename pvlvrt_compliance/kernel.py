@@ -1,37 +1,25 @@
-"""The one decorator for compiled code, and where its cache lives (what it goes by: `compiled.sources`)."""
+"""The one decorator for compiled code (where that is kept: `cache`; what it goes by: `compiled.sources`)."""
 
-import os
 import types
 from collections.abc import Callable
-from functools import cache, partial
-from pathlib import Path
+from functools import cache
 from typing import Any, TypeVar, cast
 
-import numba
 import numpy as np
-import platformdirs
 
-from pvlvrt_compliance.compiled.keeping import KernelCache
+from pvlvrt_compliance.cache import cache_root
+from pvlvrt_compliance.compiled.entry import Entry
+from pvlvrt_compliance.compiled.lazy import Block, Instructions, is_interpreted
 from pvlvrt_compliance.compiled.sources import Sources
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 # A division by zero gives inf, which the loop finds, instead of a check and a branch at every division.
-_njit: Any = partial(numba.njit, error_model="numpy")
+_ERROR_MODEL = "numpy"
 
 _blocks: set[types.FunctionType] = set()  # the Python of every kernel
 
 _sources: dict[types.FunctionType, Sources] = {}  # of what Python calls
-
-
-def cache_root() -> Path | None:
-    """Folder of all compiled code; ``NUMBA_CACHE_DIR`` moves it. None without either that or a home."""
-    given = os.environ.get("NUMBA_CACHE_DIR")
-    try:
-        root = Path(given or platformdirs.user_cache_dir("pvlvrt-compliance", appauthor=False))
-    except RuntimeError:  # no HOME, and a user that the system does not know
-        return None
-    return root.absolute() if given or root.is_absolute() else None
 
 
 def sources_of(function: Callable[..., Any]) -> Sources:
@@ -45,8 +33,21 @@ def kernel(function: F) -> F:
     Only compiled code can call it (from Python, see `plain`): wrappers for Python would double the time to compile.
     """
     _blocks.add(cast(types.FunctionType, function))
-    compiled: F = _njit(function, forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-    return compiled
+    if is_interpreted():
+        return function
+    block: Any = Block(
+        function, error_model=_ERROR_MODEL, forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True
+    )
+    return cast(F, block)
+
+
+def instructions(generator: Callable[..., Any], interpreted: F) -> F:
+    """Make an intrinsic of the compiler of what `numba.extending.intrinsic` takes.
+
+    ``interpreted`` does the same in Python, and has its place where compilation is turned off.
+    """
+    made: Any = interpreted if is_interpreted() else Instructions(generator)
+    return cast(F, made)
 
 
 def plain(function: F) -> F:
@@ -102,8 +103,7 @@ def in_single(function: F) -> F:
     Called with float32 and complex64 it computes with nothing else; with float64 it is not meant to be called. The
     source has to keep whole numbers out of its arithmetic (``5.0 * x``, ``float(n)``): numba makes float64 of them.
     """
-    config: Any = numba.config
-    if config.DISABLE_JIT:
+    if is_interpreted():
         python: F = single_in_python(function)
         return python
     compiled: F = kernel(_with_single(plain(function), in_single, {"float": np.float32}))
@@ -128,9 +128,9 @@ def cached_kernel(function: F) -> F:
 
     The global interpreter lock is released while it runs.
     """
-    compiled: Any = _njit(function, nogil=True, no_cfunc_wrapper=True)
     source, root = cast(types.FunctionType, function), cache_root()
     _sources[source] = Sources(source, __name__, root)
-    if compiled is not function:  # or compilation is turned off
-        compiled._cache = KernelCache(source, _sources[source], root)
-    return cast(F, compiled)
+    if is_interpreted():
+        return function
+    entry: Any = Entry(source, _sources[source], root, error_model=_ERROR_MODEL)
+    return cast(F, entry)

@@ -42,5 +42,6 @@ def fortescue(a: Complex, b: Complex, c: Complex) -> tuple[Complex, Complex, Com
 
 def phases(positive: Complex, negative: Complex, zero: Complex) -> tuple[Complex, Complex, Complex]:
     """Three phasors from their symmetrical components: the inverse of `fortescue`."""
-    r, r2 = ROTATION_120, ROTATION_120.conjugate()
-    return positive + negative + zero, r2 * positive + r * negative + zero, r * positive + r2 * negative + zero
+    both, across = positive + negative, 1j * SQRT3_2 * (negative - positive)
+    beside = zero - 0.5 * both
+    return zero + both, beside + across, beside - across

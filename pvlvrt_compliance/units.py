@@ -113,6 +113,11 @@ TEMPERATURE = Quantity("a temperature", "45C or 45", {"C": 1, "degC": 1, "°C": 
 ANGLE = Quantity("an angle", "90deg or 90", {"deg": 1, "°": 1})
 IRRADIANCE = Quantity("an irradiance", "800W/m2 or 800", {"W/m2": 1, "W/m²": 1, "kW/m2": 1e3, "kW/m²": 1e3})
 RATIO = Quantity("a ratio", "10 or 2.5")
+DATA_SIZE = Quantity(
+    "a size",
+    "2GB or 500MB",
+    {"GB": 1, "MB": 1e-3, "kB": 1e-6, "TB": 1e3, "GiB": 2**30 / 1e9, "MiB": 2**20 / 1e9, "TiB": 2**40 / 1e9},
+)
 
 
 def parse_quantity(text: str, what: str, quantity: Quantity) -> float:

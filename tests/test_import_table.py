@@ -24,18 +24,20 @@ ALLOWED = {
     # The public API.
     "__init__": {"api", "errors", "profile", "results", "scenario", "units", "waveforms"},  # each when first used
     # Another way in, beside the command line: the same settings, the same words.
-    "pytest_plugin": {"api", "cli.options", "errors", "report", "results", "settings", "study"},
+    "pytest_plugin": {"api", "cli.options", "errors", "report", "results", "settings", "study", "trust"},
     # The public functions; they hand reports to the run, which knows none.
     "api": {"checks", "output", "profile", "results", "scenario", "study", "units", "waveforms"},
+    # What there is to say of every grid code that can be named.
+    "profile_list": {"cache", "checks", "data", "errors", "profile"},
     # What a run writes.
     "output": {"errors", "report", "results", "study", "texts"},
     "__main__": {"cli"},
     # One file a format, and how a figure is drawn.
-    "report": COMMON | {"data", "disturbance", "evidence", "results", "waveforms", "profile"},
+    "report": COMMON | {"cache", "data", "disturbance", "evidence", "results", "waveforms", "profile"},
     # The run: a job in, judged tests out. The kernel's digest is part of the provenance of a run.
     "study": COMMON
     | {"checks", "controllers", "data", "disturbance", "evidence", "kernel", "locks", "profile", "results", "scenario"}
-    | {"simulation", "waveforms"},
+    | {"simulation", "trust", "waveforms"},
     # Judging: by what evidence says, never by the simulator.
     "checks": COMMON | {"data", "disturbance", "evidence", "measure", "profile", "results", "waveforms"},
     # The one result: plain data, so that reading it stays light.
@@ -51,9 +53,9 @@ ALLOWED = {
     # The data model of a grid code.
     "profile": COMMON | {"data", "scenario"},
     # What every file that people write shares.
-    "data": {"errors", "resources"},
+    "data": {"cache", "errors", "resources"},
     # What was written down instead of typed; which settings there are, whoever asks says.
-    "settings": {"controllers.bundled", "data", "errors"},
+    "settings": {"controllers.bundled", "data", "errors", "trust"},
     # What is asked of grid, weather and set-points.
     "scenario": COMMON | {"data"},
     # Controllers of users: whatever a door needs of the loop lies in simulation/door.
@@ -76,14 +78,20 @@ ALLOWED = {
     "resources": {"errors"},
     "locks": set(),
     "texts": set(),
+    "trust": set(),
     "compiled": {"errors", "texts"},
-    "kernel": {"compiled"},
+    # The folder of what is made anew when it is lost: compiled code, and what reports keep there.
+    "cache": {"compiled"},
+    "kernel": {"cache", "compiled"},
     "vectors": {"kernel", "space_vectors"},
     "sogi": {"kernel", "vectors"},
 }
 
-NUMBA = {"compiled", "kernel", "plant", "control", "hardware", "simulation"}
-"""The five rooms that know numba; the kernel's has two names."""
+COMPILED = {"compiled", "kernel", "plant", "control", "hardware", "simulation"}
+"""The five rooms of compiled code; the kernel's has two names."""
+
+NUMBA = {"compiled", "simulation"}
+"""Those that know numba, which has no part in running what is kept: what compiles, and how a door is called."""
 
 WAYS_IN = ("cli", "__main__", "pytest_plugin")
 """Where a program comes in: the table of options is there for all of them."""
@@ -188,7 +196,7 @@ def test_a_module_imports_only_what_its_folder_may(path):
 
 @every_module
 def test_numba_stays_with_the_kernels(path):
-    """Only compiled code knows numba, so that reading a profile or a record never pays for it."""
+    """Only what compiles knows numba, so that nothing else ever pays for it."""
     if part_of(path) not in NUMBA:
         assert not {name.split(".")[0] for name in imported(path)} & {"numba", "llvmlite"}
 
@@ -264,7 +272,7 @@ def test_the_table_allows_nothing_that_nobody_needs(part):
     """A part that stops using another gives up the right to, so that the table says how the rooms lie."""
     used = {name for path in modules() if part_of(path) == part for name in own(imported(path))}
     heads = {".".join(name.split(".")[:depth]) for name in used for depth in (1, 2)}
-    everyone_may = COMMON | (KERNELS if part in NUMBA else set()) | {"*"}
+    everyone_may = COMMON | (KERNELS if part in COMPILED else set()) | {"*"}
     assert not ALLOWED[part] - everyone_may - heads
 
 
@@ -274,6 +282,7 @@ def test_the_table_has_no_entry_for_what_is_gone():
 
 
 HEAVY = {"numba", "scipy", "plotly", "pandas"}
+LIGHT = HEAVY | {"numpy", "pydantic", "jinja2", "email.message", "tomllib"}
 OLD_RESULTS = str(Path(__file__).parent / "golden" / "results-0.1.0" / "results.json")
 COMPARE = ["compare", OLD_RESULTS, OLD_RESULTS, "--output", __file__]  # all but written: a file is no folder
 
@@ -286,18 +295,22 @@ COMPARE = ["compare", OLD_RESULTS, OLD_RESULTS, "--output", __file__]  # all but
         (f"import {NAME}.results", HEAVY | {"numpy"}),
         (f"import {NAME}.cli.main", HEAVY | {"numpy", "pydantic", "jinja2"}),  # a shell asks at each press of a key
         (f"from {NAME}.cli.main import run\nrun(['config', 'show'])", HEAVY | {"numpy", f"{NAME}.study"}),
-        (f"from {NAME}.cli.main import run\nrun(['profiles', 'list'])", HEAVY),
+        (f"from {NAME}.cli.main import run\nrun(['--version'])", LIGHT | {"importlib.metadata", "rich"}),
+        (f"from {NAME}.cli.main import run\nrun(['--help'])", LIGHT | {"importlib.metadata"}),
+        (f"from {NAME}.cli.main import run\nrun(['profiles', 'list'])", HEAVY | {"numpy"}),
         (f"from {NAME}.cli.main import run\nrun({COMPARE})", HEAVY),
         (f"from {NAME}.cli.main import run\nrun(['controllers', 'header'])", HEAVY | {"numpy"}),
-        (f"import {NAME}.checks.api, {NAME}.checks.evaluate, {NAME}.waveforms.recording", HEAVY - {"scipy"}),
-        (f"import {NAME}.simulation.simulate", {"plotly", f"{NAME}.controllers", f"{NAME}.study", f"{NAME}.checks"}),
+        (f"import {NAME}.checks.api, {NAME}.checks.evaluate, {NAME}.waveforms.recording", HEAVY),
+        (f"import {NAME}.simulation.simulate", HEAVY | {f"{NAME}.controllers", f"{NAME}.study", f"{NAME}.checks"}),
     ],
     ids=[
         "a user's controller",
         "pytest",
         "results",
-        "--help",
+        "a shell that asks",
         "config",
+        "--version",
+        "--help",
         "profiles",
         "compare",
         "header",
@@ -308,3 +321,11 @@ COMPARE = ["compare", OLD_RESULTS, OLD_RESULTS, "--output", __file__]  # all but
 def test_what_is_imported_stays_light(code, never):
     """What is only read, shown or judged never pays for the simulator, nor a simulation for what comes after it."""
     assert not loaded_by(code) & never
+
+
+def test_a_list_that_is_kept_needs_no_models(monkeypatch, tmp_path):
+    """The profiles are listed again without reading one: neither their models nor a reader of TOML are loaded."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    code = f"from {NAME}.cli.main import run\nrun(['profiles', 'list'])"
+    assert "pydantic" in loaded_by(code)
+    assert not loaded_by(code) & (LIGHT - {"email.message"} | {f"{NAME}.profile", f"{NAME}.checks"})

@@ -9,28 +9,11 @@ from pvlvrt_compliance import kernel
 from pvlvrt_compliance.plant.inverter import limit_modulation
 
 
-def test_the_cache_moves_with_the_environment(monkeypatch, tmp_path):
-    """NUMBA_CACHE_DIR says where compiled code is kept, else the user's folder for such things."""
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    assert kernel.cache_root() == tmp_path
-    monkeypatch.delenv("NUMBA_CACHE_DIR")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
-    assert kernel.cache_root() == tmp_path / "home" / "pvlvrt-compliance"
-
-
-def test_without_a_home_there_is_no_cache(monkeypatch):
-    """A user that the system does not know, without HOME, has no folder; none is made in the current one."""
-    for name in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME", "HOME"):
-        monkeypatch.delenv(name, raising=False)
-    monkeypatch.setattr(os, "getuid", lambda: 123456)
-    assert kernel.cache_root() is None
-
-
 def test_the_python_behind_a_kernel():
     """`plain` gives the function that was decorated, and leaves a function that was not as it is."""
     assert kernel.plain(limit_modulation).__name__ == "limit_modulation"
     assert not hasattr(kernel.plain(limit_modulation), "py_func")
-    assert kernel.plain(test_without_a_home_there_is_no_cache) is test_without_a_home_there_is_no_cache
+    assert kernel.plain(test_the_python_behind_a_kernel) is test_the_python_behind_a_kernel
 
 
 SHORT_RUN = """

@@ -55,7 +55,11 @@ def check(
     report_fields: Mapping[str, str] = MappingProxyType({}),
     baseline: File | None = None,
     baseline_tolerance: str | float | None = None,
+    reuse: File | None = None,
+    reuse_size: str | float | None = None,
     allow_unjudged: bool = False,
+    jobs: int | str | None = None,
+    cluster: str | None = None,
     progress: "Progress | None" = None,
 ) -> Results:
     """Run the tests of profiles, or one sag of one's own, and judge them: what the command does.
@@ -109,8 +113,20 @@ def check(
         is worse than it says.
     baseline_tolerance : str or float, optional
         By what share of the limit a margin may be lost, ``"1%"`` (the default) or 0.01.
+    reuse : str or path, optional
+        Folder of stored records: what is there, and of which nothing has changed, is not simulated again.
+    reuse_size : str or float, optional
+        What they may take: ``"2GB"``, or in GB; by default 10.
     allow_unjudged : bool
         As of the command, for `exit_status`.
+    jobs : int or str, optional
+        How many tests are run at once, each in a process of its own, ``"auto"`` for as many as there are cores; 1 is
+        one after the other on one core. By default, in this process, with the next record made while one is judged. The
+        results are the same; nothing of your program is imported or run in those processes but the controller and what
+        its profiles need.
+    cluster : str, optional
+        Address of a dask scheduler, whose workers run the tests; or ``"local"``, which starts one here with as many
+        workers as `jobs` says (put the call under ``if __name__ == "__main__":``). Needs the extra of that name.
     progress : callable, optional
         Called before each test with its profile and id, the number of tests that are finished, and of all.
 
@@ -128,6 +144,8 @@ def check(
         When a profile is not a valid one.
     OutputError
         When a file cannot be written; the finished tests are kept as the message says.
+    LostError
+        When the scheduler of a cluster is gone, or all its workers are; likewise.
     """
     given: dict[str, Any] = {
         "profiles": listed(profiles),
@@ -158,6 +176,10 @@ def check(
         "waveforms": waveforms,
         "baseline": None if baseline is None else fspath(baseline),
         "baseline_tolerance": baseline_tolerance,
+        "jobs": jobs,
+        "reuse": None if reuse is None else fspath(reuse),
+        "reuse_size": reuse_size,
+        "cluster": cluster,
     }
     asked = Asked(**given)
     job = make_job(asked, spell, last_run=None if output is None else fspath(output))

@@ -7,7 +7,7 @@ from os import PathLike, fspath
 from typing import Any
 
 from pvlvrt_compliance.profile.profile import Profile
-from pvlvrt_compliance.study.job import Asked
+from pvlvrt_compliance.study.job import HOW, Asked
 
 File = str | PathLike[str]
 
@@ -38,9 +38,11 @@ def spell(name: str) -> str:
 
 
 def told(asked: Asked) -> dict[str, Any]:
-    """What was asked for, without what is as it is unless it is given."""
+    """What was asked for, without what is as it is unless it is given, and without how it is run."""
     return {
-        field.name: getattr(asked, field.name) for field in fields(asked) if getattr(asked, field.name) != field.default
+        field.name: getattr(asked, field.name)
+        for field in fields(asked)
+        if field.name not in HOW and getattr(asked, field.name) != field.default
     }
 
 

@@ -2,9 +2,10 @@
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
+from pvlvrt_compliance.measure.extremes import first_least
 from pvlvrt_compliance.profile.requirements.base import Requirement
 from pvlvrt_compliance.results import Drawn, Status, TestResult, Verdict
 
@@ -118,11 +119,15 @@ class StretchCheck(Check):
                 name = name_of(stretch, evidence) if len(stretches) > 1 else ""
                 text = f"{name}: {verdict.message}" if name else verdict.message
                 verdicts.append(verdict.model_copy(update={"stretch": name, "message": text}))
-        if missing and not any(verdict.status is Status.FAIL for verdict in verdicts):
-            raise missing[0]
-        if verdicts:
-            return decisive(verdicts)
-        raise reasons[0] if reasons else NotApplicable("nothing in this test is what this requirement speaks of")
+        try:
+            if missing and not any(verdict.status is Status.FAIL for verdict in verdicts):
+                raise missing[0]
+            if verdicts:
+                return decisive(verdicts)
+            raise reasons[0] if reasons else NotApplicable("nothing in this test is what this requirement speaks of")
+        finally:  # an error that its own frame holds keeps the record until somebody looks for circles
+            missing.clear()
+            reasons.clear()
 
 
 class RowCheck(Check):
@@ -162,8 +167,14 @@ def decisive(verdicts: Sequence[Verdict]) -> Verdict:
     One that failed without a margin (connection was demanded throughout) is worse than any that has one.
     """
 
-    def rank(verdict: Verdict) -> tuple[int, float]:
+    def margin(verdict: Verdict) -> float:
         without = -math.inf if verdict.status is Status.FAIL else math.inf
-        return _WORST_FIRST.index(verdict.status), without if verdict.margin is None else verdict.margin
+        return without if verdict.margin is None else verdict.margin
 
-    return min(verdicts, key=rank)
+    worst = min((verdict.status for verdict in verdicts), key=_WORST_FIRST.index)
+    return nearest([verdict for verdict in verdicts if verdict.status is worst], margin)
+
+
+def nearest(verdicts: Sequence[Verdict], margin: Callable[[Verdict], float]) -> Verdict:
+    """The first of some verdicts whose margin is the least within rounding, which is a part of their limits' size."""
+    return first_least(verdicts, margin, max(abs(verdict.limit or 0.0) for verdict in verdicts))

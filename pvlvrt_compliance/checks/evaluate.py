@@ -12,6 +12,7 @@ from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.evidence.collect import collect, disturbance_of
 from pvlvrt_compliance.evidence.cursors import cursors_of
 from pvlvrt_compliance.evidence.evidence import Evidence, after_trip
+from pvlvrt_compliance.evidence.instruments import BY_DEFINITION, Instruments
 from pvlvrt_compliance.measure.quantities import MeasuredWindows
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
@@ -83,9 +84,11 @@ def evidence_of(
     nominal: Nominal,
     available_power_w: float,
     disturbance: Disturbance | None = None,
+    instruments: Instruments = BY_DEFINITION,
 ) -> Evidence:
-    """What `evaluate` judges one record by; the parameters are its own."""
-    return collect(profile, test, waveforms, nominal, available_power_w, disturbance, _release(profile))
+    """What `evaluate` judges one record by; the parameters are its own, and what series are measured with."""
+    release = _release(profile)
+    return collect(profile, test, waveforms, nominal, available_power_w, disturbance, release, instruments)
 
 
 def judge_record(profile: Profile, test: TestCase, evidence: Evidence) -> TestResult:

@@ -7,10 +7,10 @@ from typing import TypeVar
 import numpy as np
 
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
+from pvlvrt_compliance.evidence.evidence import NotApplicable
+from pvlvrt_compliance.evidence.excursions import runs_of
 from pvlvrt_compliance.evidence.outline import bends
 from pvlvrt_compliance.evidence.series import Mask
-from pvlvrt_compliance.measure.swing import without_line
 from pvlvrt_compliance.results import Band, Drawn
 from pvlvrt_compliance.waveforms.container import Samples
 
@@ -95,23 +95,21 @@ def about_the_line(
     check: str,
     quantity: str,
     name: str,
-    evidence: Evidence,
-    inside: Mask,
-    x: Samples,
+    span: tuple[float, float],
+    ends: tuple[float, float],
     room: float,
     *,
     half_cycle: bool = False,
 ) -> Band:
-    """What a series may swing by about its straight line: so wide in all, in the middle of where it swings."""
-    t_s, values = evidence.t_s[inside], x[inside]
-    rest = without_line(t_s, values, evidence.step_s[inside])
-    middle = values - rest + (rest.max() + rest.min()) / 2
-    ends = (float(middle[0]), float(middle[-1]))
+    """What a series may swing by about its straight line: so wide in all, in the middle of where it swings.
+
+    ``ends`` are the values of that middle at the instants of the span, as `measure.swing.Swing` has them.
+    """
     return Band(
         check=check,
         quantity=quantity,
         name=name,
-        t_s=(float(t_s[0]), float(t_s[-1])),
+        t_s=span,
         lower=tuple(end - room / 2 for end in ends),
         upper=tuple(end + room / 2 for end in ends),
         about_its_line=True,
@@ -121,5 +119,4 @@ def about_the_line(
 
 def stretches_of(mask: Mask) -> Iterator[slice]:
     """Stretches of samples that a mask holds without a break."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(np.int8)))
-    yield from (slice(int(first), int(end)) for first, end in edges.reshape(-1, 2))
+    yield from (slice(first, end) for first, end in runs_of(mask))

@@ -1,12 +1,13 @@
 """Requirements of several limits: each is a part, and the part nearest to failing is reported."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
 from pvlvrt_compliance.data.marks import Marked
 from pvlvrt_compliance.evidence.evidence import NotApplicable
+from pvlvrt_compliance.measure.extremes import first_least
 from pvlvrt_compliance.profile.requirements import Requirement
 from pvlvrt_compliance.results import Verdict
 from pvlvrt_compliance.results.digits import digits_of
@@ -46,24 +47,16 @@ class Part(NamedTuple):
         return math.inf if self.passed else -math.inf
 
 
-def by_relative_margin(part: Part) -> float:
-    """Order of parts of different units."""
-    return part.relative_margin
-
-
-def by_margin(part: Part) -> float:
-    """Order of parts of one unit."""
-    return part.margin
-
-
 def judged_by_parts(
     kind: str,
     requirement: Requirement,
     parts: Sequence[Part],
     *,
-    nearest: Callable[[Part], float] = by_relative_margin,
+    one_unit: bool = False,
 ) -> Verdict:
-    """Verdict on the part with the least margin, by default relative to its limit; one that fails comes first.
+    """Verdict on the part with the least margin; one that fails comes first, of several that are equal the first.
+
+    Margins count relative to their limits, as parts of ``one_unit`` as they are.
 
     Raises
     ------
@@ -72,7 +65,8 @@ def judged_by_parts(
     """
     if not parts:
         raise NotApplicable("the profile states no limit for this test")
-    worst = min(parts, key=lambda part: (part.passed, nearest(part)))
+    failed = [part for part in parts if not part.passed]
+    worst = _nearest(failed or parts, one_unit)
     verdict = judged(
         kind,
         requirement,
@@ -88,6 +82,12 @@ def judged_by_parts(
         uncertainty=worst.uncertainty,
     )
     return verdict.model_copy(update={"message": _message(worst, verdict)})
+
+
+def _nearest(parts: Sequence[Part], one_unit: bool) -> Part:
+    if one_unit:
+        return first_least(parts, lambda part: part.margin, max(part.limit for part in parts))
+    return first_least(parts, lambda part: part.relative_margin, 1.0)
 
 
 def _message(part: Part, verdict: Verdict) -> str:

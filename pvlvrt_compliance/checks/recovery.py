@@ -49,10 +49,10 @@ def recovered_after_s(
     return settled_after_s(t_s, active_power < target_kw, from_s)
 
 
-def part_after(evidence: Evidence, from_s: float, until_s: float | None) -> Mask:
-    """Mask of the samples from an instant to before another (s), or to the end of the record, shape (n,)."""
-    after = evidence.between(from_s, evidence.waveforms.end_s)
-    return after if until_s is None else after & (evidence.t_s < until_s)
+def part_after(evidence: Evidence, from_s: float, until_s: float | None) -> slice:
+    """Samples from an instant to before another (s), or to the end of the record."""
+    end_s = evidence.waveforms.end_s
+    return evidence.samples(from_s, end_s) if until_s is None else evidence.samples_before(from_s, until_s)
 
 
 def settled_after_s(t_s: Samples, outside: Mask, from_s: float) -> float | None:

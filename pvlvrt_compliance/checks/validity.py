@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from pvlvrt_compliance.evidence.evidence import Evidence
+from pvlvrt_compliance.evidence.no_load import has_source
 from pvlvrt_compliance.measure.sequences import sequence_phasors
 from pvlvrt_compliance.profile.procedure import Conditions
 from pvlvrt_compliance.waveforms.joining import window_on_one_grid
@@ -42,7 +43,7 @@ def _record_too_short(evidence: Evidence) -> str | None:
 def _wrong_order(evidence: Evidence) -> str | None:
     """Phases in the order c, b, a: a controller that follows V+ finds none."""
     start_s, nominal_hz = evidence.disturbance.start_s, evidence.nominal.frequency_hz
-    kind, place = ("u0", "without the inverter's current") if "u0_a_v" in evidence.waveforms.names else ("u", "")
+    kind, place = ("u0", "without the inverter's current") if has_source(evidence) else ("u", "")
     begin_s = max(start_s - _ORDER_CYCLES / nominal_hz, evidence.waveforms.t0_s)
     if start_s - begin_s < _LEAST_ORDER_CYCLES / nominal_hz:
         return None  # whoever measures the start says so

@@ -42,12 +42,12 @@ def check(
         return None
     from pvlvrt_compliance.cli.settled import settled
     from pvlvrt_compliance.results.files import FOLDER
-    from pvlvrt_compliance.study.job import Asked, make_job
+    from pvlvrt_compliance.study.job import AUTO, Asked, make_job
 
     holds = settled(given)
     of_job, others = given_options(holds.given, [field.name for field in fields(Asked)])
     spell = holds.spell(spelled)
-    job = make_job(Asked(**of_job), spell, last_run=others.get("output", FOLDER))
+    job = make_job(Asked(**{"jobs": AUTO, **of_job}), spell, last_run=others.get("output", FOLDER))
     as_json = others.pop("list_json", False)
     if others.pop("list_only", False):
         from pvlvrt_compliance.cli.catalogue import show_tests
@@ -56,7 +56,8 @@ def check(
     from pvlvrt_compliance.cli.running import run
 
     command = holds.command(context.obj or ("pvlvrt-check",))
-    return run(job, command=command, spell=spell, settings=holds.provenance, **others)
+    given = holds.given
+    return run(job, command=command, spell=spell, settings=holds.provenance, given=given, **others)
 
 
 check.__doc__ = _HELP

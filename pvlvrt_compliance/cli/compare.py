@@ -66,7 +66,7 @@ def _sides(
     """Both runs; the exit status where one was stopped."""
     from pvlvrt_compliance.cli.running import stopped
     from pvlvrt_compliance.study.comparing import are_run, refuse_unused, sides_of
-    from pvlvrt_compliance.study.job import Asked
+    from pvlvrt_compliance.study.job import AUTO, Asked
 
     holds, _ = given_of(OPTIONS, given, OPTIONS)
     spell: Spell = spelled
@@ -78,7 +78,7 @@ def _sides(
         holds, spell, settings = found.given, found.spell(spelled), found.provenance
     else:
         refuse_unused([name for name in OF_CONTROLLERS if name in holds], spelled)
-    asked = Asked(**{field.name: holds[field.name] for field in fields(Asked) if field.name in holds})
+    asked = Asked(**{"jobs": AUTO, **{field.name: holds[field.name] for field in fields(Asked) if field.name in holds}})
     command = context.obj or ("pvlvrt-check",)
     try:
         return sides_of(names, asked, str(folder), _runs(command, holds, spell, settings), spell)

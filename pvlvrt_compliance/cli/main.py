@@ -1,9 +1,9 @@
 """Entry point: reads the command line, turns every error into one clear line and an exit status."""
 
+import gc
 import io
 import os
 import sys
-import traceback
 from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any
@@ -15,30 +15,38 @@ from pvlvrt_compliance.cli.check import check
 from pvlvrt_compliance.cli.compare import compare
 from pvlvrt_compliance.cli.completion.answering import answer, is_asked
 from pvlvrt_compliance.cli.completion.command import completion
+from pvlvrt_compliance.cli.completion.scripts import PROGRAM
 from pvlvrt_compliance.cli.guarding import guarded
+from pvlvrt_compliance.cli.merge import merge
 from pvlvrt_compliance.cli.schema import schema
 from pvlvrt_compliance.cli.telling import tell
-from pvlvrt_compliance.cli.typed import understood
+from pvlvrt_compliance.cli.typed import read_what_is_given, understood
 from pvlvrt_compliance.compiled.notes import tell_in_lines
 from pvlvrt_compliance.controllers.process.command import STOPS, become_the_command, leave, status_of, words_of
-from pvlvrt_compliance.errors import OutputError, PvlvrtError
+from pvlvrt_compliance.errors import PvlvrtError, UnfinishedError
 from pvlvrt_compliance.texts import write_any_name
 
 USAGE_STATUS = 2
 UNWRITTEN_STATUS = CRASHED_STATUS = 3
 
+# Of what a start makes, next to nothing is ever to be collected; Python would look for it two hundred times.
+_COLLECTIONS = (20_000, 20, 10)
+
 # What typer raises for an option it does not know or cannot read. Its own name has moved between versions.
 _CommandLineError: Any = typer.BadParameter.__bases__[0]
 
+_SETTINGS: dict[str, Any] = {"help_option_names": ["-h", "--help"]}
+
 app = typer.Typer(
-    name="pvlvrt-check",
+    name=PROGRAM,
     add_completion=False,  # typer's writes into start-up files; "completion" prints, and asks as typer's does
     rich_markup_mode="rich",
     no_args_is_help=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings=_SETTINGS,
 )
 app.callback(invoke_without_command=True)(check)
 app.command()(compare)
+app.command()(merge)
 app.command()(schema)
 app.command()(completion)
 app.add_typer(profiles.app, name="profiles")
@@ -58,11 +66,14 @@ def _run(arguments: Sequence[str]) -> int:
     if is_asked():
         return answer(command)
     try:
-        status = command.main(
-            args=understood(command, arguments),
-            prog_name="pvlvrt-check",
+        called, words, rest = _called(command, understood(command, arguments))
+        read_what_is_given(called, rest)
+        status = called.main(
+            args=rest,
+            prog_name=" ".join([PROGRAM, *words]),
             standalone_mode=False,
-            obj=("pvlvrt-check", *arguments),
+            obj=(PROGRAM, *arguments),
+            **_SETTINGS,
         )
     except _CommandLineError as error:
         return _complain(error.format_message())
@@ -77,8 +88,23 @@ def _run(arguments: Sequence[str]) -> int:
     return status if isinstance(status, int) else 0
 
 
+def _called(command: Any, words: list[str]) -> tuple[Any, list[str], list[str]]:
+    """The command that words are for, those that call it, and the rest.
+
+    Nothing stands before a command (`understood`), so the options of the groups above it need not be read: for those
+    of the main command alone typer loads pydantic, and makes a validator each.
+    """
+    path: list[str] = []
+    while words and words[0] in getattr(command, "commands", {}):
+        command = command.commands[words[0]]
+        path.append(words[0])
+        words = words[1:]
+    return command, path, words
+
+
 def main() -> None:
     """Run as a program."""
+    gc.set_threshold(*_COLLECTIONS)
     tell_in_lines()
     become_the_command()
     if isinstance(sys.stdout, io.TextIOWrapper):
@@ -87,6 +113,8 @@ def main() -> None:
         status = _flushed(run(sys.argv[1:]))
     except Exception:
         # Python's own status for a crash is 1, which means here that a check failed.
+        import traceback
+
         with suppress(OSError), guarded():
             traceback.print_exc()
         status = CRASHED_STATUS
@@ -109,7 +137,7 @@ def _flushed(status: int) -> int:
 
 
 def _complain_of(error: PvlvrtError | OSError) -> int:
-    if isinstance(error, OutputError):
+    if isinstance(error, UnfinishedError):
         return _complain(str(error), UNWRITTEN_STATUS)
     if isinstance(error, OSError) and error.filename is None:  # of all that is written, one stream has no name
         return _complain(_unwritten(error), UNWRITTEN_STATUS)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvlvrt_compliance.cli.progress import progress_bar
 from pvlvrt_compliance.cli.publishing import publish
@@ -17,6 +17,10 @@ from pvlvrt_compliance.results import Results, exit_status
 from pvlvrt_compliance.results.files import FOLDER
 from pvlvrt_compliance.study.job import Job, Spell
 from pvlvrt_compliance.study.running import run_job
+from pvlvrt_compliance.study.shards.part import head_of
+
+if TYPE_CHECKING:
+    from pvlvrt_compliance.study.shards.merging import Whole
 
 
 def run(
@@ -25,6 +29,8 @@ def run(
     command: Sequence[str],
     spell: Spell,
     settings: Mapping[str, Any] | None = None,
+    given: Mapping[str, Any] | None = None,
+    whole: "Whole | None" = None,
     output: str = FOLDER,
     csv: bool = False,
     formats: Sequence[str] = (),
@@ -35,7 +41,10 @@ def run(
     quiet: bool = False,
     verbose: bool = False,
 ) -> int:
-    """Run a job into the folder ``output``, show what it found, return the exit status; ``spell`` names the options."""
+    """Run a job into the folder ``output``, show what it found, return the exit status; ``spell`` names the options.
+
+    ``given`` is what was given, by field, which a part of a run keeps; ``whole`` are the parts that are to be one run.
+    """
     kept: list[Results] = []
     try:
         results = run_job(
@@ -43,7 +52,8 @@ def run(
             command=command,
             output=output_in(
                 output,
-                len(job.tests),
+                job.size,
+                head=head_of(job, given or {}, command, settings),
                 csv=csv,
                 spell=spell,
                 formats=formats,
@@ -54,6 +64,7 @@ def run(
             tell=tell,
             settings=settings,
             kept=kept.append,
+            whole=whole,
         )
     except BaseException as end:
         for part in kept:

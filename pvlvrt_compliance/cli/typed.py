@@ -45,6 +45,19 @@ def understood(command: Any, arguments: Sequence[str]) -> list[str]:
     return words
 
 
+def read_what_is_given(command: Any, words: Sequence[str]) -> None:
+    """Have typer read those parameters of a command only that are given in words, unless help is asked for.
+
+    For each that it reads, given or not, and ``--help`` is one, it makes a validator of pydantic's. What is left out
+    has the default of its function.
+    """
+    given = {word.partition("=")[0] for word in words}
+    short = any(word[:1] == "-" and word[1:2] not in ("", "-") for word in words)  # several of them may be one word
+    if not short and not given & {*HELP}:
+        command.add_help_option = False
+        command.params = [x for x in command.params if x.required or not _names(x) or given & {*_names(x)}]
+
+
 def _with_explicit_pair(arguments: Sequence[str]) -> list[str]:
     """Read ``--two-phase ab`` and ``--two-phase=ab`` as ``--two-phase --phases ab``: typer has no optional values."""
     given: list[str] = []

@@ -4,8 +4,8 @@ That finds damage, not malice: who may write in the folder may write a file with
 """
 
 import hashlib
-import os
 import shutil
+import stat
 import uuid
 from contextlib import suppress
 from pathlib import Path
@@ -28,10 +28,14 @@ def read_checked(file: Path, purpose: str) -> bytes | None:
     OSError
         When it cannot be read.
     """
-    if not file.is_file():
-        if os.path.lexists(file):
-            raise DamagedError("not a file")
+    try:
+        kind = file.stat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        if file.is_symlink():
+            raise DamagedError("not a file") from None
         return None
+    if not stat.S_ISREG(kind):
+        raise DamagedError("not a file")
     head, content = _parted(file.read_bytes())
     if not head:
         raise DamagedError("empty" if not content else "not a file of compiled code")

@@ -3,13 +3,14 @@
 import warnings
 from pathlib import Path
 
-from pvlvrt_compliance.compiled.checked_file import throw_away
-from pvlvrt_compliance.errors import CompiledCodeWarning
+from pvlvrt_compliance.errors import CompiledCodeWarning, KeptFileWarning
 from pvlvrt_compliance.texts import printable
 
 
 def discard(file: Path, why: object) -> None:
     """Throw a damaged file away and say so."""
+    from pvlvrt_compliance.compiled.checked_file import throw_away  # every command loads this module
+
     throw_away(file)
     _say_once("damaged", f"{file}: damaged ({why}): thrown away and made anew")
 
@@ -31,13 +32,13 @@ def _say_once(kind: str, text: str) -> None:
 
 def tell_in_lines() -> None:
     """Have these warnings, and no others, come as a line each of the command, whatever Python's options say of them."""
-    warnings.filterwarnings("always", category=CompiledCodeWarning)
+    warnings.filterwarnings("always", category=KeptFileWarning)
     others = warnings.formatwarning
 
     def formatted(
         message: Warning | str, category: type[Warning], filename: str, lineno: int, line: str | None = None
     ) -> str:
-        if issubclass(category, CompiledCodeWarning):
+        if issubclass(category, KeptFileWarning):
             return f"pvlvrt-check: {printable(str(message))}\n"
         return others(message, category, filename, lineno, line)
 

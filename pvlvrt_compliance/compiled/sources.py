@@ -2,18 +2,18 @@
 
 import hashlib
 import importlib.machinery
+import importlib.metadata
 import importlib.util
 import json
 import platform
 from contextlib import suppress
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from types import FunctionType
 from typing import Any
 
 import llvmlite  # type: ignore[import-untyped]
 import llvmlite.binding  # type: ignore[import-untyped]
-import numba
 import numpy as np
 
 from pvlvrt_compliance.compiled.checked_file import DamagedError, read_checked, write_checked
@@ -132,8 +132,19 @@ def _compilers() -> list[str]:
         features = target.get_host_cpu_features().flatten()
     except RuntimeError:  # not known for every kind of processor
         features = ""
-    versions = [platform.python_version(), numba.__version__, llvmlite.__version__, np.__version__]
+    versions = [platform.python_version(), numbas_release(), llvmlite.__version__, np.__version__]
     return [*versions, target.get_process_triple(), target.get_host_cpu_name(), features]
+
+
+@cache
+def numbas_release() -> str:
+    """Which numba this is, by its own file: to import all of it takes longer than to load what it has made."""
+    spec = importlib.util.find_spec("numba")
+    file = Path((spec and spec.origin) or "").with_name("_version.py")
+    try:
+        return file.read_text("utf-8")
+    except OSError:
+        return importlib.metadata.version("numba")
 
 
 def _is_old(module: str, file: str) -> bool:

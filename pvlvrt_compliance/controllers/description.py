@@ -66,7 +66,12 @@ class Description:
     notes : tuple of str
         What else there is to know of it.
     mapping : str or None
-        The mapping file that ties its ports, if there is one.
+        The mapping file that ties its ports or lists its files, if there is one.
+    besides : str
+        What decides what it does besides its file, parameters and mapping, in words; empty: nothing does. Asked for
+        when it is opened, not for every run.
+    may_be_listed : bool
+        Whether that is made known by the files that a mapping lists.
     """
 
     kind: str
@@ -78,6 +83,8 @@ class Description:
     parameters: tuple[ParameterInfo, ...] = ()
     notes: tuple[str, ...] = ()
     mapping: str | None = None
+    besides: str = ""
+    may_be_listed: bool = True
 
     def to_json(self) -> dict[str, Any]:
         """As plain dictionaries."""

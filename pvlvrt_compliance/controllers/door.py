@@ -1,6 +1,7 @@
 """What a door is: the contract between the loop and every kind of controller from outside."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import ClassVar, NamedTuple, Protocol
 
 from pvlvrt_compliance.controllers.description import Description, Value
@@ -72,6 +73,12 @@ class Door(Protocol):
             When a mapping file does not fit its ports.
         """
 
+    def besides(self) -> str:
+        """What decides what the controller does besides its file, parameters and mapping; empty: nothing does."""
+
+    def may_be_listed(self) -> bool:
+        """Whether that is made known by the files that a mapping lists."""
+
     def open(self, nominal: Nominal) -> DoorCall:
         """Make a controller at rest for an inverter of this rating, ready for its first sample.
 
@@ -86,3 +93,14 @@ class Door(Protocol):
 
     def close(self) -> None:
         """End the controller."""
+
+
+def described(door: Door) -> Description:
+    """All that is known of a controller before its first run.
+
+    Raises
+    ------
+    DoorError
+        As of `Door.describe`.
+    """
+    return replace(door.describe(), besides=door.besides(), may_be_listed=door.may_be_listed())

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.controllers.description import Description, Value
-from pvlvrt_compliance.controllers.door import DoorError
+from pvlvrt_compliance.controllers.door import DoorError, described
 from pvlvrt_compliance.controllers.process.worker import RunJob
 from pvlvrt_compliance.controllers.python.door import PythonDoor
 from pvlvrt_compliance.controllers.run import run_through
@@ -75,16 +75,25 @@ class SimulatorHere(ForeignSimulator):
         self._made = made
         super().__init__(name_of(made), given)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """There is no other process that could have it."""
+        raise TypeError(self.stays_here)
+
+    @property
+    def stays_here(self) -> str:
+        """That it is in this process alone."""
+        return "the controller exists in this process alone"
+
     def stop(self) -> None:
         """Have the run that may be under way in another thread end with its next sample."""
         self._stopped.set()
 
     def _door(self) -> PythonDoor:
-        return _DoorHere(self._made, self._given, self._stopped)
+        return _DoorHere(self._made, self.given, self._stopped)
 
     def _describe(self) -> Description:
         try:
-            return self._door().describe()
+            return described(self._door())
         except DoorError as error:
             raise UsageError(f"controller {self.spec}: {error}") from None
 
@@ -102,6 +111,14 @@ class _DoorHere(PythonDoor):
     def __init__(self, made: Factory, given: Mapping[str, Value], stopped: Event) -> None:
         self._class_name, self._digest, self._stopped = name_of(made), _digest(made), stopped
         self._begin(made, given)
+
+    def besides(self) -> str:
+        """What this process has made of it so far is not known."""
+        return "it is made in this process, not from a file"
+
+    def may_be_listed(self) -> bool:
+        """There is no file."""
+        return False
 
     def _caller(self, *of_the_run: Any) -> Callable[[Any], int]:
         advance, is_stopped = super()._caller(*of_the_run), self._stopped.is_set

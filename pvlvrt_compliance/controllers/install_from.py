@@ -1,13 +1,12 @@
 """Where a project takes this package from, on whatever machine checks it."""
 
 import re
-import zipfile
 from collections.abc import Sequence
-from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import urlsplit
 
+from pvlvrt_compliance import __version__
 from pvlvrt_compliance.errors import UsageError, did_you_mean
 
 PACKAGE = "pvlvrt-compliance"
@@ -54,7 +53,7 @@ def source_of(spec: str | None, extras: Sequence[str] = ()) -> Source:
         When it is none of these, or would be there on this machine only.
     """
     if spec is None:
-        return _wheel(f"{PACKAGE.replace('-', '_')}-{version(PACKAGE)}-py3-none-any.whl", None, extras)
+        return _wheel(f"{PACKAGE.replace('-', '_')}-{__version__}-py3-none-any.whl", None, extras)
     if spec.lower().endswith(".whl") and "://" not in spec:
         return _wheel(*_content(spec), extras)
     if not spec or not spec.isprintable() or re.search(r"[\s#;'\"`\\]", spec):
@@ -90,6 +89,8 @@ def _wheel(name: str, content: bytes | None, extras: Sequence[str]) -> Source:
 
 def _content(spec: str) -> tuple[str, bytes]:
     """Name and content of a wheel of this package."""
+    import zipfile
+
     file, package = Path(spec), PACKAGE.replace("-", "_")
     if not re.fullmatch(rf"{package}-[A-Za-z0-9_.+!-]+\.whl", file.name):
         raise _refused(spec, f"is no wheel of this package, which is {package}-VERSION-py3-none-any.whl")
@@ -131,7 +132,7 @@ def _from_an_index(spec: str, extras: Sequence[str]) -> Source:
         raise _refused(spec, f"allowed are {_ALLOWED}{did_you_mean(name or spec, [PACKAGE])}")
     wanted = [*extras, *filter(None, (found["extras"] or "").split(","))]
     versions = found["versions"] or ""
-    pin = "" if _ONE_VERSION.fullmatch(versions) else f"{PACKAGE}=={version(PACKAGE)}"
+    pin = "" if _ONE_VERSION.fullmatch(versions) else f"{PACKAGE}=={__version__}"
     where = "the package index that pip is set up for (`PIP_INDEX_URL` names another)"
     return Source(
         f"{PACKAGE}{_with(wanted)}{versions}", f"The tool comes from {where}.{_on_pinning(pin)}", "", None, pin

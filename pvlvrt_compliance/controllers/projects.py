@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pvlvrt_compliance.controllers.install_from import Source, source_of
-
 if TYPE_CHECKING:
     from jinja2 import Environment
+
+    from pvlvrt_compliance.controllers.install_from import Source
 
 _TEMPLATES = Path(__file__).with_name("templates")
 _SHARED = "shared"
@@ -95,6 +95,8 @@ def project(kind: str, install_from: str | None = None) -> Project:
     UsageError
         When ``install_from`` cannot be used.
     """
+    from pvlvrt_compliance.controllers.install_from import source_of
+
     source = source_of(install_from, _KINDS[kind].extras)
     files = _files(kind, source)
     if source.wheel is not None:
@@ -107,7 +109,7 @@ def project_files(kind: str) -> dict[str, bytes]:
     return project(kind).files
 
 
-def _files(kind: str, source: Source) -> dict[str, bytes]:
+def _files(kind: str, source: "Source") -> dict[str, bytes]:
     made = _KINDS[kind]
     named = [f"{folder}/{file.name}" for folder in (_SHARED, kind) for file in sorted((_TEMPLATES / folder).iterdir())]
     named += [f"python/{name}" for name in made.others]

@@ -1,7 +1,7 @@
 """From a scenario and parameters to waveforms, with a controller of the user's own in a process of its own."""
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 
 from pvlvrt_compliance.controllers.description import Description, Value
 from pvlvrt_compliance.controllers.mapping.commands import missing_commands, missing_words
+from pvlvrt_compliance.controllers.mapping.file import load_mapping
 from pvlvrt_compliance.controllers.process.isolation import RECORD, Ended, do_apart, stop_apart
 from pvlvrt_compliance.controllers.process.worker import DescribeJob, RunJob
+from pvlvrt_compliance.controllers.program.link import TCP
 from pvlvrt_compliance.controllers.run import IGNORED_WORDS, settling_s_of, when
 from pvlvrt_compliance.controllers.sample_time import rates_of
 from pvlvrt_compliance.errors import SimulationError, UsageError
@@ -39,6 +41,10 @@ class ForeignSimulator:
         Its parameters, as far as they are set.
     mapping : str or None
         File that ties its ports to the plant; None: the one beside it, if there is one, and their names.
+    description : Description, optional
+        What it has said of itself, where it was opened before: every run holds it to that.
+    beside : str, optional
+        Folder that relative names start from; by default the working folder.
 
     Raises
     ------
@@ -46,15 +52,33 @@ class ForeignSimulator:
         When it cannot be opened.
     """
 
-    def __init__(self, spec: str, given: Mapping[str, Value] | None = None, mapping: str | None = None) -> None:
+    def __init__(
+        self,
+        spec: str,
+        given: Mapping[str, Value] | None = None,
+        mapping: str | None = None,
+        description: Description | None = None,
+        beside: str | None = None,
+    ) -> None:
         self.spec = spec
-        self._given = dict(given or {})
+        self._beside = beside
+        self.given = dict(given or {})
         self.notes: list[str] = []  # what the controller has said in its runs so far, each once
+        self.last_notes: list[str] = []  # the same of the last run alone
         self._mapping = mapping
         self._stopped = Event()
-        self.description = self._describe()
+        self.description = description or self._describe()
         if loose := self.loose_inputs():
             self.notes.append(f"tied to nothing and left as the controller has them: inputs {', '.join(loose)}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For another process, where it is not described anew."""
+        return ForeignSimulator, (self.spec, self.given, self._mapping, self.description, self._beside)
+
+    @property
+    def stays_here(self) -> str:
+        """Why it cannot be run in several processes at once; empty where it can."""
+        return "what listens at an address runs one test at a time" if self.spec.startswith(TCP) else ""
 
     def __call__(self, scenario: Scenario, parameters: Parameters) -> Waveforms:
         """Run the controller through a scenario.
@@ -67,6 +91,7 @@ class ForeignSimulator:
         UsageError
             When its sample time does not fit the plant step that is set.
         """
+        self.last_notes = []
         rates = rates_of(self.description.sample_time_s, parameters)
         period_s = rates.sample_time_s / rates.periods
         row_s = rates.thinning * period_s
@@ -75,12 +100,13 @@ class ForeignSimulator:
         def make(plan: RecordingPlan) -> Waveforms:
             in_periods = RecordingPlan(first=rates.thinning * plan.first, step=rates.thinning * plan.step)
             answer, samples = self._run(job_of(in_periods), limit_s)
-            self.notes += [note for note in answer["notes"] if note not in self.notes]
+            self.last_notes += [note for note in answer["notes"] if note not in self.last_notes]
+            self.note(answer["notes"])
             return record_of(samples, plan, row_s, answer["channels"], tripped_at_s=answer["tripped_at_s"])
 
         def job_of(plan: RecordingPlan) -> RunJob:
             return RunJob(
-                *(self.spec, self._given, self._mapping),
+                *(self.spec, self.given, self._mapping, self._beside or str(Path.cwd())),
                 scenario=scenario,
                 parameters=parameters,
                 plan=plan,
@@ -112,6 +138,21 @@ class ForeignSimulator:
         self._stopped.set()
         stop_apart()
 
+    def note(self, said: Iterable[str]) -> None:
+        """Add what the controller has said in a run, this one or an earlier one."""
+        self.notes += [note for note in dict.fromkeys(said) if note not in self.notes]
+
+    def lists_files(self) -> bool:
+        """Whether there is a mapping that lists files.
+
+        Raises
+        ------
+        UsageError
+            When it cannot be used any more.
+        """
+        mapping = load_mapping(self.mapping())
+        return mapping is not None and bool(mapping.files)
+
     def loose_inputs(self) -> tuple[str, ...]:
         """Inputs that are given nothing, not even by a constant of the mapping."""
         return tuple(port.name for port in self.description.inputs if port.is_loose)
@@ -137,7 +178,7 @@ class ForeignSimulator:
 
     def parameter_values(self) -> dict[str, Value]:
         """Its parameters by name: as they are given, else as the controller has them."""
-        return {p.name: self._given.get(p.name, p.value) for p in self.description.parameters}
+        return {p.name: self.given.get(p.name, p.value) for p in self.description.parameters}
 
     def provenance(self, parameters: Parameters) -> dict[str, Any]:
         """What identifies the controller and how it was run."""
@@ -158,7 +199,9 @@ class ForeignSimulator:
         }
 
     def _describe(self) -> Description:
-        ended, _ = do_apart(DescribeJob(self.spec, self._given, self._mapping), _OPENING_LIMIT_S)
+        ended, _ = do_apart(
+            DescribeJob(self.spec, self.given, self._mapping, self._beside or str(Path.cwd())), _OPENING_LIMIT_S
+        )
         if ended.answer is None:
             raise UsageError(f"--controller {self.spec}: {_with_said(ended.reason, ended)}")
         if "error" in ended.answer:

@@ -116,6 +116,15 @@ class Choice(Marked, Generic[Word]):
 
     value: Word
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For another process, which has no class by the name of these words."""
+        return _choice_unfilled, tuple(self.__pydantic_generic_metadata__["args"]), self.__getstate__()
+
+
+def _choice_unfilled(word: Any) -> Choice[Any]:
+    model = Choice[word]
+    return model.__new__(model)
+
 
 def _positive(number: Number) -> Number:
     if number.value <= 0:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from pvlvrt_compliance.data.content import too_deep, unusable
+from pvlvrt_compliance.data.kept_tables import keep_table, table_kept
 from pvlvrt_compliance.data.models import Model, validated
 from pvlvrt_compliance.data.positions import Location, Places, key_lines
 from pvlvrt_compliance.data.problems import dotted
@@ -44,7 +45,7 @@ class Source:
         self.origin = str(path) if origin is None else origin
         try:
             self.text = read_text(path, kind.one)
-            self.table = self._checked(parse(self.text, kind.many))
+            self.table = table_kept(self.text) or self._checked(parse(self.text, kind.many))
         except UnreadableError as error:
             place = self.origin if error.line is None else f"{self.origin}:{error.line}"
             raise kind.error(self.origin, [f"{place}: {error}"]) from None
@@ -69,6 +70,7 @@ class Source:
         problems = list(unusable(table))
         if problems:
             raise self.refusal(*problems)
+        keep_table(self.text, table)
         return table
 
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pvlvrt_compliance.disturbance.asked import disturbance_asked
 from pvlvrt_compliance.disturbance.model import Disturbance, NormalVoltage
 from pvlvrt_compliance.evidence.evidence import Evidence, floors_of
+from pvlvrt_compliance.evidence.instruments import BY_DEFINITION, Instruments
 from pvlvrt_compliance.measure.quantities import MeasuredWindows
 from pvlvrt_compliance.measure.summary import measure
 from pvlvrt_compliance.measure.windows import STANDARD_RULES, WindowRules
@@ -23,6 +24,7 @@ def collect(
     available_power_w: float,
     disturbance: Disturbance | None = None,
     release: Callable[[Evidence], float | None] | None = None,
+    instruments: Instruments = BY_DEFINITION,
 ) -> Evidence:
     """Measure a record and put it together with what is known about its test; parameters as `checks.evaluate`."""
     rules, disturbance = window_rules(profile), disturbance or disturbance_of(profile, test)
@@ -45,6 +47,7 @@ def collect(
         by_s=test.by_s,
         row=test.demand,
         release=release,
+        instruments=instruments,
     )
 
 

@@ -1,5 +1,6 @@
 """Extremes, means and response times of each stretch between steps, as a test bench tells them by its cursors."""
 
+import math
 from collections.abc import Callable, Collection, Iterator
 from typing import NamedTuple
 
@@ -10,6 +11,7 @@ from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.evidence.frequency import frequency_hz
 from pvlvrt_compliance.evidence.stretches import settling_s, surely_over_s
+from pvlvrt_compliance.measure.extremes import ROUNDING
 from pvlvrt_compliance.measure.quantities import Cursor, CursorStretch
 from pvlvrt_compliance.measure.response import Tolerance, step_response
 from pvlvrt_compliance.measure.windows import Span, last_window
@@ -69,7 +71,7 @@ def _quantities(evidence: Evidence, limited: Collection[str]) -> Iterator[_Quant
         ("voltage_negative_pu", lambda: evidence.voltage_negative_pu, least),
         ("active_power_kw", lambda: evidence.active_power_kw, power),
         ("reactive_power_kvar", lambda: evidence.reactive_power_kvar, power),
-        ("current_pu", lambda: np.max(evidence.current_phase_pu, axis=0), least),
+        ("current_pu", lambda: evidence.largest_current_pu, least),
     ]
     if "reactive_current_pu" in limited:
         wanted.append(("reactive_current_pu", lambda: evidence.reactive_current_pu, least))
@@ -96,8 +98,7 @@ def _before(evidence: Evidence, quantities: list[_Quantity]) -> CursorStretch | 
     window = evidence.measurements.before
     if window is None:
         return None
-    found = [_extremes(evidence, quantity, Span(window.start_s, window.end_s)) for quantity in quantities]
-    cursors = tuple(cursor for cursor in found if cursor is not None)
+    cursors = tuple(_extremes(evidence, quantities, Span(window.start_s, window.end_s)).values())
     return CursorStretch(begin_s=window.start_s, end_s=window.end_s, is_before=True, cursors=cursors)
 
 
@@ -105,50 +106,66 @@ def _of_stretch(evidence: Evidence, stretch: Stretch, quantities: list[_Quantity
     end_s = surely_over_s(evidence, stretch.end_s)
     before_s = surely_over_s(evidence, stretch.begin_s)
     final = None if stretch.ramps else last_window(stretch.begin_s, end_s, evidence.frequency_hz, evidence.rules)
-    cursors = []
-    for quantity in quantities:
-        cursor = _extremes(evidence, quantity, Span(stretch.begin_s + settling_s(evidence), end_s))
-        if cursor is None:
-            continue
-        if final is not None:
-            levels = Span(before_s - cycle_s, before_s), final
-            cursor = _timed(evidence, quantity, cursor, Span(stretch.begin_s, end_s), levels)
-        cursors.append(cursor)
+    cursors = _extremes(evidence, quantities, Span(stretch.begin_s + settling_s(evidence), end_s))
+    if final is not None:
+        levels = [_means(evidence, quantities, span) for span in (Span(before_s - cycle_s, before_s), final)]
+        for number, quantity in enumerate(quantities):
+            if quantity.name in cursors:
+                ends = (levels[0][number], levels[1][number])
+                timed = _timed(evidence, quantity, Span(stretch.begin_s, end_s), ends)
+                cursors[quantity.name] = cursors[quantity.name].model_copy(update=timed)
     return CursorStretch(
         begin_s=stretch.begin_s,
         end_s=stretch.end_s,
         in_words=stretch.in_words,
         band_percent=_PERCENT * evidence.thresholds.response_band.value,
-        cursors=tuple(cursors),
+        cursors=tuple(cursors.values()),
     )
 
 
 def _inside(evidence: Evidence, span: Span) -> slice:
     """Samples from one instant up to another, at which something else begins."""
-    first, end = np.searchsorted(evidence.t_s, np.array(span) - _SAME_INSTANT_S)
-    return slice(int(first), int(end))
+    return evidence.samples_before(span.start_s, span.end_s - _SAME_INSTANT_S)
 
 
-def _extremes(evidence: Evidence, quantity: _Quantity, span: Span) -> Cursor | None:
+def _extremes(evidence: Evidence, quantities: list[_Quantity], span: Span) -> dict[str, Cursor]:
+    """Cursors by quantity, of those that are finite in a span that holds a sample."""
+    inside = _inside(evidence, span)
+    if inside.start == inside.stop or not quantities:
+        return {}
+    means = _means(evidence, quantities, span)
+    ends = [(float(of.series[inside].min()), float(of.series[inside].max())) for of in quantities]
+    return {
+        of.name: Cursor(quantity=of.name, minimum=minimum, maximum=maximum, mean=mean)
+        for of, (minimum, maximum), mean in zip(quantities, ends, means, strict=True)
+        if math.isfinite(minimum) and math.isfinite(maximum)  # what is not a number is both
+    }
+
+
+def _means(evidence: Evidence, quantities: list[_Quantity], span: Span) -> list[float]:
+    """Means over time, not finite where a quantity is not everywhere, or the span holds no sample."""
+    inside = _inside(evidence, span)
+    step_s = evidence.step_s[inside]
+    if not len(step_s):
+        return [math.nan] * len(quantities)
+    with np.errstate(invalid="ignore"):
+        sums = [float((of.series[inside] * step_s).sum()) for of in quantities]
+    whole_s = float(step_s.sum())
+    return [of / whole_s for of in sums]
+
+
+def _timed(evidence: Evidence, quantity: _Quantity, span: Span, levels: tuple[float, float]) -> dict[str, float | None]:
+    """Levels before and after a step, and the times between them where they can be told."""
+    initial, final = levels
+    if not (math.isfinite(initial) and math.isfinite(final)):
+        return {}
+    found: dict[str, float | None] = {"initial": initial, "final": final}
     inside = _inside(evidence, span)
     x = quantity.series[inside]
-    if not len(x) or not np.isfinite(x).all():
-        return None
-    mean = float(np.average(x, weights=evidence.step_s[inside]))
-    return Cursor(quantity=quantity.name, minimum=float(x.min()), maximum=float(x.max()), mean=mean)
-
-
-def _timed(evidence: Evidence, quantity: _Quantity, cursor: Cursor, span: Span, levels: tuple[Span, Span]) -> Cursor:
-    """A cursor with its levels, and its times where they can be told."""
-    initial, final = (_extremes(evidence, quantity, level) for level in levels)
-    if initial is None or final is None:
-        return cursor
-    found: dict[str, float | None] = {"initial": initial.mean, "final": final.mean}
-    inside = _inside(evidence, span)
-    x = quantity.series[inside]
-    if abs(final.mean - initial.mean) >= quantity.least and np.isfinite(x).all():
+    # A change of just the least is timed, whichever way its means are rounded.
+    if abs(final - initial) >= quantity.least * (1 - ROUNDING) and np.isfinite(x).all():
         band = evidence.thresholds.response_band.value
-        response = step_response(evidence.t_s[inside], x, span.start_s, initial.mean, final.mean, Tolerance(band, band))
+        response = step_response(evidence.t_s[inside], x, span.start_s, initial, final, Tolerance(band, band))
         found |= {
             "reaction_s": response.reaction_s,
             "rise_s": response.rise_s,
@@ -156,4 +173,4 @@ def _timed(evidence: Evidence, quantity: _Quantity, cursor: Cursor, span: Span, 
             "settling_s": response.settling_s,
             "overshoot_percent": _PERCENT * response.overshoot,
         }
-    return cursor.model_copy(update=found)
+    return found

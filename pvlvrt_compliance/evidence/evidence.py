@@ -97,6 +97,9 @@ class Evidence(Record):
         MeasurementError
             When the record does not say everywhere whether the breaker is closed.
         """
+        return self.once(("stretches", until), lambda: self._stretches_until(until))
+
+    def _stretches_until(self, until: Until) -> tuple[Stretch, ...]:
         end_s = self.record_end_s
         reason = "nothing of the record is left to judge"
         if (tripped_s := self.known_opening_s) is not None and tripped_s < end_s:

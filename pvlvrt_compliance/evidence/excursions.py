@@ -31,9 +31,8 @@ def excursions(
     list of Span
         In order of time; those that the delay alone had made are left out.
     """
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], beyond, [False])).astype(np.int8)))
     found: list[Span] = []
-    for first, end in edges.reshape(-1, 2):
+    for first, end in runs_of(beyond):
         begin_s = _anchored(float(t_s[first]), steps_s, lag_s)
         # A stretch to the end of the record has no end that a step could have made.
         end_s = float(t_s[-1]) if end == len(t_s) else _anchored(float(t_s[end]), steps_s, lag_s)
@@ -44,6 +43,15 @@ def excursions(
     return found
 
 
+def runs_of(mask: Mask) -> list[tuple[int, int]]:
+    """First sample and end of each stretch of samples that a mask holds without a break."""
+    if not mask.any():
+        return []
+    edges = (np.flatnonzero(mask[1:] != mask[:-1]) + 1).tolist()
+    edges = [*([0] if mask[0] else []), *edges, *([len(mask)] if mask[-1] else [])]
+    return list(zip(edges[::2], edges[1::2], strict=True))
+
+
 def time_spent_s(found: list[Span], t_s: Samples, window_s: float | None) -> Samples:
     """Time in the excursions up to each instant (s): of the present one, or of all within the sliding window if more.
 
@@ -51,7 +59,8 @@ def time_spent_s(found: list[Span], t_s: Samples, window_s: float | None) -> Sam
     """
     inside, present, total = inside_of(found, t_s), np.zeros(len(t_s)), np.zeros(len(t_s))
     for begin_s, end_s in found:
-        present = np.where(t_s >= begin_s, t_s - begin_s, present)
+        since = slice(int(np.searchsorted(t_s, begin_s)), len(t_s))
+        present[since] = t_s[since] - begin_s
         if window_s is not None:
             total += _overlap(t_s, begin_s, end_s, window_s)
     return np.where(inside, np.maximum(present, total), 0.0)
@@ -61,7 +70,7 @@ def inside_of(found: list[Span], t_s: Samples) -> Mask:
     """Mask of the instants that lie in an excursion, its end left out."""
     inside = np.zeros(len(t_s), dtype=np.bool_)
     for begin_s, end_s in found:
-        inside |= (t_s >= begin_s) & (t_s < end_s)
+        inside[slice(*np.searchsorted(t_s, (begin_s, end_s)))] = True
     return inside
 
 

@@ -3,17 +3,27 @@
 import numpy as np
 
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
-from pvlvrt_compliance.evidence.excursions import excursions
+from pvlvrt_compliance.evidence.excursions import excursions, runs_of
+from pvlvrt_compliance.evidence.no_load import has_source
 from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.evidence.stretches import after_each_step
+from pvlvrt_compliance.measure.extremes import largest
 from pvlvrt_compliance.waveforms.container import Samples
+
+_LOOSER = 100
+"""Rounding of a frequency in that of other values: it is an angle over time, and the angle grows with the record."""
 
 
 def frequency_hz(evidence: Evidence) -> Samples:
     """Frequency at each sample (Hz), the last known value held; shape (n,), NaN before the first."""
-    known = known_frequency_hz(evidence)
-    last = np.maximum.accumulate(np.where(np.isfinite(known), np.arange(len(known)), -1))
-    return np.where(last >= 0, known[last], np.nan)
+    return evidence.once("frequency_hz", lambda: _held(known_frequency_hz(evidence)))
+
+
+def _held(known: Samples) -> Samples:
+    held = known.copy()
+    for first, end in runs_of(~np.isfinite(known)):
+        held[first:end] = known[first - 1] if first else np.nan
+    return held
 
 
 def known_frequency_hz(evidence: Evidence) -> Samples:
@@ -25,16 +35,14 @@ def known_frequency_hz(evidence: Evidence) -> Samples:
     impedance: there it is not known for as long as the voltage is not normal, and until the current has settled after
     that and after each step.
     """
-    return np.where(_disturbed(evidence), np.nan, evidence.tracked_frequency_hz)
+    return evidence.once(
+        "known_frequency_hz", lambda: np.where(_disturbed(evidence), np.nan, evidence.tracked_frequency_hz)
+    )
 
 
 def held_in_words(evidence: Evidence) -> str:
     """What a message says of a frequency that was not measured throughout, empty when it was."""
-    return "" if _has_source(evidence) else " (at the terminals, held while their voltage was not normal)"
-
-
-def _has_source(evidence: Evidence) -> bool:
-    return "u0_a_v" in evidence.waveforms.names
+    return "" if has_source(evidence) else " (at the terminals, held while their voltage was not normal)"
 
 
 def _disturbed(evidence: Evidence) -> Mask:
@@ -43,7 +51,7 @@ def _disturbed(evidence: Evidence) -> Mask:
     settled = evidence.thresholds.terminals_settled_cycles.value
     spoiled_s, settled_s = spoiled / evidence.frequency_hz, settled / evidence.frequency_hz
     disturbed = after_each_step(evidence, spoiled_s, evidence.disturbance.steps_of("angle", "voltage"))
-    if _has_source(evidence):
+    if has_source(evidence):
         faint = evidence.sequence_pu("u0", 0) < evidence.thresholds.least_source_pu.value
         return disturbed | _around(faint, evidence, spoiled)
     abnormal = evidence.disturbance.normal.is_left_by(evidence.voltage_positive_pu, evidence.voltage_negative_pu)
@@ -56,12 +64,12 @@ def _around(mask: Mask, evidence: Evidence, after_cycles: float) -> Mask:
     cycle_s = 1 / evidence.frequency_hz
     around = np.zeros(len(mask), dtype=np.bool_)
     for begin_s, end_s in excursions(mask, evidence.t_s, gap_s=cycle_s):
-        around |= evidence.between(begin_s - cycle_s, end_s + after_cycles * cycle_s)
+        around[evidence.samples(begin_s - cycle_s, end_s + after_cycles * cycle_s)] = True
     return around
 
 
 def largest_deviation(evidence: Evidence) -> tuple[float, float]:
-    """Frequency furthest from nominal (Hz) and its instant (s).
+    """Frequency furthest from nominal (Hz) and its first instant (s).
 
     Raises
     ------
@@ -69,14 +77,14 @@ def largest_deviation(evidence: Evidence) -> tuple[float, float]:
         When the record has no voltage to measure a frequency of, or stays near nominal (`frequency_deviation_hz`).
     """
     frequency = frequency_hz(evidence)
-    known = np.flatnonzero(np.isfinite(frequency))
-    if not len(known):
+    first = int(np.isfinite(frequency).argmax())  # what is not known after that is held
+    if not np.isfinite(frequency[first]):
         raise NotApplicable("the record has no frequency")
-    deviation = np.abs(frequency[known] - evidence.nominal.frequency_hz)
-    at = known[deviation.argmax()]
-    if deviation.max() <= (near_hz := evidence.thresholds.frequency_deviation_hz.value):
+    deviation = np.abs(frequency[first:] - evidence.nominal.frequency_hz)
+    furthest_hz, since = largest(deviation, _LOOSER * evidence.nominal.frequency_hz)
+    if furthest_hz <= (near_hz := evidence.thresholds.frequency_deviation_hz.value):
         raise NotApplicable(f"the frequency stays within {near_hz:g} Hz of nominal")
-    return float(frequency[at]), float(evidence.t_s[at])
+    return float(frequency[first + since]), float(evidence.t_s[first + since])
 
 
 def ends_at_another_frequency(evidence: Evidence) -> tuple[float, float] | None:

@@ -1,10 +1,14 @@
 """The voltage that the grid has without the inverter's current, where a check asks what the inverter made of it."""
 
-import numpy as np
-
 from pvlvrt_compliance.evidence.evidence import Evidence, require_finite
+from pvlvrt_compliance.measure.durations import mean_over_time
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.waveforms.container import Samples
+
+
+def has_source(evidence: Evidence) -> bool:
+    """Whether the record has the voltages without the inverter's current."""
+    return "u0_a_v" in evidence.waveforms.names
 
 
 def no_load_series_pu(evidence: Evidence, index: int) -> Samples:
@@ -12,7 +16,7 @@ def no_load_series_pu(evidence: Evidence, index: int) -> Samples:
 
     At the terminals in a record that has no such voltages: they then decide.
     """
-    return evidence.sequence_pu("u0" if "u0_a_v" in evidence.waveforms.names else "u", index)
+    return evidence.sequence_pu("u0" if has_source(evidence) else "u", index)
 
 
 def no_load_mean_pu(evidence: Evidence, span: Span) -> tuple[float, float]:
@@ -23,10 +27,10 @@ def no_load_mean_pu(evidence: Evidence, span: Span) -> tuple[float, float]:
     MeasurementError
         When a voltage is missing or not finite.
     """
-    inside = evidence.between(*span)
+    inside = evidence.samples(*span)
     positive, negative = (
         require_finite(no_load_series_pu(evidence, index)[inside], "the no-load voltage", evidence.t_s[inside])
         for index in (0, 1)
     )
     weights = evidence.step_s[inside]
-    return float(np.average(positive, weights=weights)), float(np.average(negative, weights=weights))
+    return mean_over_time(positive, weights), mean_over_time(negative, weights)

@@ -1,23 +1,28 @@
 """What is known about one record: its windows, its breaker, and the series made from it."""
 
 import math
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
 from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.evidence.series import Series
+from pvlvrt_compliance.evidence.series import Made, Series
+from pvlvrt_compliance.measure.durations import mean_over_time
 from pvlvrt_compliance.measure.quantities import MeasuredStretch, MeasuredWindows, WindowMeasurements
 from pvlvrt_compliance.measure.response import settled_from
 from pvlvrt_compliance.measure.summary import Floors, measure_span
 from pvlvrt_compliance.measure.windows import Span, WindowRules, standard_windows, stretch_window
 from pvlvrt_compliance.profile.thresholds import Thresholds
 from pvlvrt_compliance.waveforms.breaker import opened_at_s
-from pvlvrt_compliance.waveforms.container import Samples
+from pvlvrt_compliance.waveforms.container import Samples, Segment
 from pvlvrt_compliance.waveforms.joining import window_on_one_grid
 from pvlvrt_compliance.waveforms.trip_causes import in_words
+
+_SAME_INSTANT_S = 1e-9
 
 
 class NotApplicable(Exception):  # noqa: N818 - it is a verdict, not an error
@@ -42,6 +47,46 @@ class Record(Series):
     rules: WindowRules
     blocked_below_pu: float
 
+    def samples(self, start_s: float, end_s: float) -> slice:
+        """Samples from one instant to another, both included: those that `between` masks."""
+        return self._slice(start_s, end_s + _SAME_INSTANT_S, "right")
+
+    def samples_before(self, start_s: float, end_s: float) -> slice:
+        """Samples from one instant to before another."""
+        return self._slice(start_s, end_s, "left")
+
+    def _slice(self, start_s: float, end_s: float, side: Literal["left", "right"]) -> slice:
+        key = (start_s, end_s, side)  # the checks and the figures ask for the same spans again and again
+        if key not in self._slices:
+            first = int(np.searchsorted(self.t_s, start_s - _SAME_INSTANT_S))
+            self._slices[key] = slice(first, max(int(np.searchsorted(self.t_s, end_s, side)), first))
+        return self._slices[key]
+
+    @cached_property
+    def _slices(self) -> dict[tuple[float, float, str], slice]:
+        return {}
+
+    def once_for(self, item: object, key: Hashable, make: Callable[[], Made]) -> Made:
+        """As `once`, for one object alone: not for another that is equal to it."""
+        return self.once((key, id(item)), lambda: (item, make()))[1]  # while it is kept, no other has its number
+
+    @cached_property
+    def largest_current_pu(self) -> Samples:
+        """One-cycle fundamental amplitude of the phase current that is the largest, shape (n,)."""
+        largest: Samples = np.maximum.reduce(self.current_phase_pu)
+        return largest
+
+    @cached_property
+    def largest_instantaneous_pu(self) -> Samples:
+        """The largest magnitude of the instantaneous phase currents, shape (n,)."""
+
+        def largest(segment: Segment) -> Samples:
+            a, b, c = segment.three_phase("i")
+            found: Samples = np.maximum(np.maximum(np.abs(a), np.abs(b)), np.abs(c))
+            return found
+
+        return self.joined(largest) / self.nominal.phase_current_peak_a
+
     @cached_property
     def disconnected_at_s(self) -> float | None:
         """First instant the breaker is open (s), None when it never opens.
@@ -59,8 +104,8 @@ class Record(Series):
         """What opened the breaker, in words; None when it stays closed or the record does not say."""
         if "trip_cause" not in self.waveforms.names:
             return None
-        codes = self._trip_codes
-        return in_words(int(codes.max())) if codes.max() > 0 else None
+        code = np.max([segment["trip_cause"].max(initial=0.0) for segment in self.waveforms])
+        return in_words(int(code)) if code > 0 else None
 
     @cached_property
     def tripped_before_s(self) -> float | None:
@@ -68,18 +113,15 @@ class Record(Series):
 
         None when none did, or the record does not say.
         """
-        if "trip_cause" not in self.waveforms.names:
+        if self.trip_cause is None:
             return None
-        first = int((self._trip_codes > 0).argmax())
-        if not self._trip_codes[first] > 0 or self.t_s[first] >= self.disturbance.start_s:
+        codes = self.joined(lambda segment: segment["trip_cause"])
+        first = int((codes > 0).argmax())
+        if not codes[first] > 0 or self.t_s[first] >= self.disturbance.start_s:
             return None
         if (known_s := self.waveforms.tripped_at_s) is not None:
             return known_s
         return float(self.t_s[first]) if first else -math.inf
-
-    @property
-    def _trip_codes(self) -> Samples:
-        return self.joined(lambda segment: segment["trip_cause"])
 
     @cached_property
     def blocked_at_s(self) -> float | None:
@@ -89,8 +131,8 @@ class Record(Series):
         """
         if self.known_opening_s is not None:
             return None
-        current = require_finite(self.current_pu, "the current", self.t_s)
-        blocked_from = settled_from(np.asarray((np.abs(current) >= self.blocked_below_pu).any(axis=0)))
+        current = require_finite(self.largest_instantaneous_pu, "the current", self.t_s)
+        blocked_from = settled_from(current >= self.blocked_below_pu)
         return float(self.t_s[blocked_from]) if blocked_from else None
 
     @property
@@ -110,18 +152,21 @@ class Record(Series):
         In the during-window; where the sag is too short for one, from one cycle after the start to clearing. None
         where not even one cycle fits, and in a record that has no such voltages.
         """
-        inside = self.between(*self._no_load_span)
-        if not inside.any() or "u0_a_v" not in self.waveforms.names:
+        inside = self.samples(*self._no_load_span)
+        if inside.start == inside.stop or "u0_a_v" not in self.waveforms.names:
             return None
         positive, negative = (
             require_finite(self.sequence_pu("u0", index)[inside], "u0", self.t_s[inside]) for index in (0, 1)
         )
         step_s = self.step_s[inside]
-        return float(np.average(positive, weights=step_s)), float(np.average(negative, weights=step_s))
+        return mean_over_time(positive, step_s), mean_over_time(negative, step_s)
 
     @property
     def asked_pu(self) -> tuple[float, float]:
         """Mean V+ and V- that the source was asked for where `no_load_pu` is measured (pu)."""
+        first, last = (self.disturbance.stretch_at(t) for t in self._no_load_span)
+        if first is last and first.voltage_at_end is None:  # it holds
+            return first.voltage.positive_pu, first.voltage.negative_pu
         asked = [self.disturbance.no_load(float(t)) for t in np.linspace(*self._no_load_span, 101)]
         return (
             float(np.mean([voltage.positive_pu for voltage in asked])),
@@ -241,8 +286,9 @@ def require_finite(values: Samples, what: str, t_s: Samples) -> Samples:
     MeasurementError
         Naming the first instant at which one is not.
     """
-    bad = np.atleast_2d(~np.isfinite(values)).any(axis=0)
-    if bad.any():
+    finite = np.isfinite(values)
+    if not finite.all():
+        bad = np.atleast_2d(~finite).any(axis=0)
         raise MeasurementError(f"{what} has no finite value at {t_s[bad.argmax()]:.3f} s")
     return values
 

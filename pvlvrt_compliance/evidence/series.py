@@ -1,6 +1,6 @@
 """Series that several checks need, each made from the record once."""
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeVar
@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.disturbance.model import Disturbance
-from pvlvrt_compliance.measure.fourier import ComplexSamples, Frequency, one_cycle_mean
+from pvlvrt_compliance.evidence.instruments import BY_DEFINITION, Instruments
+from pvlvrt_compliance.measure.fourier import ComplexSamples
 from pvlvrt_compliance.measure.frequency import frequency_before
 from pvlvrt_compliance.measure.power import (
     Power,
@@ -18,18 +19,19 @@ from pvlvrt_compliance.measure.power import (
     negative_sequence_current,
     sequence_current,
 )
-from pvlvrt_compliance.measure.sequences import sequence_phasors
-from pvlvrt_compliance.measure.tracking import steering_frequency, tracked_frequency
+from pvlvrt_compliance.measure.sliding import Frequency
+from pvlvrt_compliance.measure.tracking import steering_frequency
 from pvlvrt_compliance.profile.thresholds import STANDARD_THRESHOLDS, Thresholds
 from pvlvrt_compliance.space_vectors import SQRT2_3, Sequences, clarke, phases
 from pvlvrt_compliance.units import Nominal
-from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
+from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms, phase_channels
 from pvlvrt_compliance.waveforms.joining import one_cycle_series
 
 Mask = NDArray[np.bool_]
 Made = TypeVar("Made")
 
 _SAME_INSTANT_S = 1e-9
+_AT_A_TIME = 4096  # samples: what is made of so many on the way stays in the processor's own memory
 _TRACKING_CYCLES = 4  # that a tracked frequency rests on, and settles in
 _STEERING_CYCLES = 8  # that the frequency of one-cycle windows rests on, and settles in
 
@@ -51,12 +53,15 @@ class Series:
         What the grid did.
     thresholds : Thresholds
         Floors of measurement.
+    instruments : Instruments
+        What one-cycle series are measured with.
     """
 
     waveforms: Waveforms
     nominal: Nominal
     disturbance: Disturbance
     thresholds: Thresholds = STANDARD_THRESHOLDS
+    instruments: Instruments = BY_DEFINITION
 
     @cached_property
     def frequency_hz(self) -> float:
@@ -86,14 +91,14 @@ class Series:
     @cached_property
     def voltage_phasors_pu(self) -> ComplexSamples:
         """One-cycle phasors of the phase-to-neutral voltages at the terminals, shape (3, n)."""
-        return self._phases("u") / self.nominal.phase_voltage_peak_v
+        return self._phases_pu("u", self.nominal.phase_voltage_peak_v)
 
     @cached_property
     def no_load_phasors_pu(self) -> ComplexSamples | None:
         """The same of the source without the inverter's current, None in a record that has no such voltages."""
         if "u0_a_v" not in self.waveforms.names:
             return None
-        return self._phases("u0") / self.nominal.phase_voltage_peak_v
+        return self._phases_pu("u0", self.nominal.phase_voltage_peak_v)
 
     @cached_property
     def tracked_frequency_hz(self) -> Samples:
@@ -102,15 +107,15 @@ class Series:
         Of the source where the record has its voltages: behind an impedance its current turns the terminals'.
         """
         kind = "u0" if "u0_a_v" in self.waveforms.names else "u"
-        found: Samples = self._one_cycle(
-            lambda segment: tracked_frequency(segment, self.nominal.frequency_hz, kind, self._floor_v), _TRACKING_CYCLES
+        tracked, nominal_hz = self.instruments.tracked_frequency, self.nominal.frequency_hz
+        return self._of_cycles(
+            lambda segment: tracked(segment, nominal_hz, kind, self._floor_v), _TRACKING_CYCLES, (kind,)
         )
-        return found
 
     @cached_property
     def current_phase_pu(self) -> Samples:
         """One-cycle fundamental amplitudes of the phase currents, shape (3, n)."""
-        return np.abs(self._phases("i")) / self.nominal.phase_current_peak_a
+        return np.abs(self._phases_pu("i", self.nominal.phase_current_peak_a))
 
     @cached_property
     def reactive_current_pu(self) -> Samples:
@@ -170,26 +175,13 @@ class Series:
     @cached_property
     def _mean_powers(self) -> Power:
         """One-cycle means of P (W) and Q (var)."""
-        return Power(
-            *self._one_cycle(
-                lambda segment: one_cycle_mean(
-                    np.stack(instantaneous_power(segment)), segment.dt_s, self._window_hz(segment)
-                ),
-                1 if self._is_steady else _STEERING_CYCLES,
-            )
-        )
+        return Power(*self._windowed(self.instruments.mean_powers, "ui"))
 
     @cached_property
     def half_cycle_kva(self) -> Power:
         """Half-cycle means of P (kW) and Q (kvar), which leave out what swings at 2f and its multiples, shape (n,)."""
-        return Power(
-            *self._one_cycle(
-                lambda segment: one_cycle_mean(
-                    np.stack(instantaneous_power(segment)) / 1e3, segment.dt_s, 2 * self._window_hz(segment)
-                ),
-                1 if self._is_steady else _STEERING_CYCLES,
-            )
-        )
+        mean_powers = self.instruments.mean_powers
+        return Power(*self._windowed(lambda segment, window_hz: mean_powers(segment, 2 * window_hz), "ui") / 1e3)
 
     @cached_property
     def instantaneous_kva(self) -> Power:
@@ -222,35 +214,55 @@ class Series:
     def _made(self) -> dict[Hashable, Any]:
         return {}
 
+    def forget(self) -> None:
+        """Let go of all that was made of the record, once nobody asks for more: some refers back to the record."""
+        self._made.clear()
+
     def between(self, start_s: float, end_s: float) -> Mask:
         """Mask of the samples from one instant to another, both included, shape (n,)."""
-        mask: Mask = (self.t_s >= start_s - _SAME_INSTANT_S) & (self.t_s <= end_s + _SAME_INSTANT_S)
+        mask = np.zeros(len(self.t_s), dtype=np.bool_)
+        first = np.searchsorted(self.t_s, start_s - _SAME_INSTANT_S)
+        mask[first : np.searchsorted(self.t_s, end_s + _SAME_INSTANT_S, side="right")] = True
         return mask
 
     def sequence_pu(self, kind: str, index: int) -> Samples:
         """One-cycle amplitude of a sequence (0 positive, 1 negative) of the voltages ``u`` or ``u0``, shape (n,)."""
-        phasors: ComplexSamples = self._sequences(kind)[index]
-        return np.abs(phasors) / self.nominal.phase_voltage_peak_v
+        return self.once(
+            ("sequence_pu", kind, index),
+            lambda: np.abs(self._sequences(kind)[index]) / self.nominal.phase_voltage_peak_v,
+        )
 
     def joined(self, series: Callable[[Segment], Samples]) -> Samples:
         """What a function makes of each segment, one after the other, shape (..., n)."""
-        return np.concatenate([series(segment) for segment in self.waveforms], axis=-1)
+        parts = [series(segment) for segment in self.waveforms]
+        return np.concatenate(parts, axis=-1) if len(parts) > 1 else parts[0]
+
+    def _of_cycles(self, series: Callable[[Segment], NDArray[Any]], cycles: int, kinds: Iterable[str]) -> NDArray[Any]:
+        """What a function makes of quantities of some kinds in the cycles that end at each sample, shape (..., n)."""
+        channels = [name for kind in kinds for name in phase_channels(kind)]
+        parts = one_cycle_series(self.waveforms, series, self.frequency_hz, cycles, channels)
+        return np.concatenate(parts, axis=-1) if len(parts) > 1 else parts[0]
 
     def _sequence_current_pu(self, index: int, split: Callable[..., SequenceCurrent]) -> SequenceCurrent:
         found = split(self._sequences("u")[index], self._sequences("i")[index], self._floor_v)
         return SequenceCurrent(*(x / self.nominal.phase_current_peak_a for x in found))
 
-    def _phases(self, kind: str) -> ComplexSamples:
-        return np.asarray(phases(*self._sequences(kind)), dtype=np.complex128)
+    def _phases_pu(self, kind: str, base: float) -> ComplexSamples:
+        """One-cycle phasors of the phases by a base, shape (3, n)."""
+        sequences = self._sequences(kind)
+        found = np.empty((3, len(sequences.zero)), dtype=np.complex128)
+        for begin in range(0, found.shape[1], _AT_A_TIME):
+            part = slice(begin, begin + _AT_A_TIME)
+            found[:, part] = phases(*(phasor[part] for phasor in sequences))
+        found.view(np.float64)[...] /= base
+        return found
 
     def _sequences(self, kind: str) -> Sequences:
         """One-cycle phasors of the sequences, peak values in V or A; angles of the same sample can be compared."""
         if kind not in self._found:
+            phasors = self.instruments.sequence_phasors
             self._found[kind] = Sequences(
-                *self._one_cycle(
-                    lambda segment: np.stack(sequence_phasors(segment, kind, self._window_hz(segment))),
-                    1 if self._is_steady else _STEERING_CYCLES,
-                )
+                *self._windowed(lambda segment, window_hz: phasors(segment, kind, window_hz), (kind,))
             )
         return self._found[kind]
 
@@ -268,19 +280,20 @@ class Series:
         """Whether the grid keeps its frequency: one-cycle windows go by the one before the disturbance then."""
         return not self.disturbance.frequency_moves
 
-    def _window_hz(self, segment: Segment) -> Frequency:
-        """Frequency that one-cycle windows go by (Hz)."""
-        if self._is_steady:
-            return self.frequency_hz
-        number = next((k for k, own in enumerate(self.waveforms) if own is segment), None)
-        return self._steered_hz(segment) if number is None else self._steered_by_segment[number]
-
-    @cached_property
-    def _steered_by_segment(self) -> list[Samples]:
-        return [self._steered_hz(segment) for segment in self.waveforms]
-
     def _steered_hz(self, segment: Segment) -> Samples:
-        return steering_frequency(segment, "u", self.nominal.frequency_hz, self._floor_v)[0]
+        """Frequency that one-cycle windows go by where it moves (Hz), shape (n,)."""
 
-    def _one_cycle(self, series: Callable[[Segment], NDArray[Any]], cycles: int = 1) -> NDArray[Any]:
-        return np.concatenate(one_cycle_series(self.waveforms, series, self.frequency_hz, cycles), axis=-1)
+        def steered() -> Samples:
+            tracked, nominal_hz = self.instruments.tracked_frequency, self.nominal.frequency_hz
+            return steering_frequency(segment, "u", nominal_hz, self._floor_v, tracked)[0]
+
+        # The same parts of the record are asked for by every series.
+        return self.once(("steered", segment.t0_s, segment.dt_s, len(segment)), steered)
+
+    def _windowed(self, series: Callable[[Segment, Frequency], NDArray[Any]], kinds: Iterable[str]) -> NDArray[Any]:
+        """What a function makes of the cycle that ends at each sample, from quantities of some kinds."""
+        if self._is_steady:
+            return self._of_cycles(lambda segment: series(segment, self.frequency_hz), 1, kinds)
+        return self._of_cycles(
+            lambda segment: series(segment, self._steered_hz(segment)), _STEERING_CYCLES, {*kinds, "u"}
+        )

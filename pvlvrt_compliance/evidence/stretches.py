@@ -50,8 +50,10 @@ def between_steps_s(evidence: Evidence, at_s: float) -> tuple[float, float]:
 def settled_pu(evidence: Evidence, voltage_pu: Samples, at_s: float) -> float | None:
     """Median of a voltage between the steps next to an instant, its first cycle left out (pu); None if none is left."""
     begin_s, end_s = between_steps_s(evidence, at_s)
-    settled = evidence.between(begin_s + 1 / evidence.frequency_hz, end_s)
-    return median_over_time(voltage_pu[settled], evidence.step_s[settled]) if settled.any() else None
+    settled = evidence.samples(begin_s + 1 / evidence.frequency_hz, end_s)
+    if settled.start == settled.stop:
+        return None
+    return median_over_time(voltage_pu[settled], evidence.step_s[settled])
 
 
 def settling_s(evidence: Evidence) -> float:
@@ -63,5 +65,5 @@ def after_each_step(evidence: Evidence, time_s: float, instants_s: tuple[float, 
     """Mask of the samples that lie up to some time (s) after one of the instants, shape (n,)."""
     spoiled = np.zeros(len(evidence.t_s), dtype=np.bool_)
     for t in instants_s:
-        spoiled |= evidence.between(t, t + time_s)
+        spoiled[evidence.samples(t, t + time_s)] = True
     return spoiled

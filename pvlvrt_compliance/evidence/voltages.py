@@ -3,7 +3,8 @@
 from typing import Literal
 
 from pvlvrt_compliance.evidence.evidence import Evidence
-from pvlvrt_compliance.measure.phase_quantities import voltage_amplitude
+from pvlvrt_compliance.evidence.no_load import has_source
+from pvlvrt_compliance.measure.phase_quantities import amplitudes_for, of_amplitudes
 from pvlvrt_compliance.profile.curves import VoltageQuantity
 from pvlvrt_compliance.waveforms.container import Samples
 
@@ -23,7 +24,7 @@ Place = Literal["terminals", "no_load"]
 
 
 def voltage_quantity_pu(evidence: Evidence, quantity: VoltageQuantity, place: Place = "terminals") -> Samples:
-    """Amplitude of the fundamental of the cycle that ends at each sample (pu), shape (n,); see `voltage_amplitude`.
+    """Amplitude of the fundamental of the cycle that ends at each sample (pu), shape (n,).
 
     Without the inverter's current where ``place`` says so; in a record that has no such voltages, at the terminals.
 
@@ -32,7 +33,15 @@ def voltage_quantity_pu(evidence: Evidence, quantity: VoltageQuantity, place: Pl
     MeasurementError
         When a voltage is missing.
     """
-    phasors = evidence.no_load_phasors_pu if place == "no_load" else None
+    at: Place = "no_load" if place == "no_load" and has_source(evidence) else "terminals"
+    return evidence.once(("voltage", quantity, at), lambda: _made(evidence, quantity, at))
+
+
+def _made(evidence: Evidence, quantity: VoltageQuantity, place: Place) -> Samples:
     if quantity == "positive_sequence":
-        return evidence.voltage_positive_pu if phasors is None else evidence.sequence_pu("u0", 0)
-    return voltage_amplitude(evidence.voltage_phasors_pu if phasors is None else phasors, quantity)
+        return evidence.voltage_positive_pu if place == "terminals" else evidence.sequence_pu("u0", 0)
+    phasors = evidence.no_load_phasors_pu if place == "no_load" else None
+    phasors = evidence.voltage_phasors_pu if phasors is None else phasors
+    line_to_line = quantity.endswith("line_to_line")
+    amplitudes = evidence.once(("amplitudes", place, line_to_line), lambda: amplitudes_for(phasors, quantity))
+    return of_amplitudes(amplitudes, quantity)

@@ -12,18 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.errors import MeasurementError
+from pvlvrt_compliance.measure.sliding import ROUND_OFF, CycleWindows, Frequency, running_integral, steady_average
 from pvlvrt_compliance.waveforms.container import Samples
 
 ComplexSamples = NDArray[np.complex128]
 
-Frequency = float | Samples
-"""A frequency (Hz): one for all samples, or one at each sample, shape (n,), finite."""
-
 AMPLITUDE_FLOOR = 1.0
 """Amplitude of a phasor (V or A, peak) below which it has no angle to speak of, where no other floor is given."""
 
-# A cycle that misses a whole number of samples by less than this, in samples, is taken to be whole.
-_ROUND_OFF = 1e-9
+# Steps that a row of a table of turns has.
+_ROW = 256
 
 
 class WholeCycles(NamedTuple):
@@ -63,16 +61,12 @@ def turning(n: int, dt_s: float, frequency_hz: Frequency) -> ComplexSamples:
 
 @lru_cache(maxsize=4)
 def _turning_steadily(n: int, dt_s: float, frequency_hz: float) -> ComplexSamples:
-    # The same for all signals of a record, and dear.
-    turned: ComplexSamples = np.exp(-2j * np.pi * dt_s * frequency_hz * np.arange(n))
+    # The same for all signals of a record. A turn by k steps is one by whole rows of them and one by the rest.
+    step = -2j * np.pi * dt_s * frequency_hz
+    rows = np.exp(step * _ROW * np.arange(-(-n // _ROW)))
+    turned: ComplexSamples = np.outer(rows, np.exp(step * np.arange(_ROW))).reshape(-1)[:n]
     turned.flags.writeable = False
     return turned
-
-
-def running_integral(y: NDArray[Any]) -> NDArray[Any]:
-    """Integral over the samples so far, by trapezoids, 0 at the first one; in sampling steps, shape (..., n)."""
-    integral: NDArray[Any] = np.cumsum(y, axis=-1) - 0.5 * (y + y[..., :1])
-    return integral
 
 
 def one_cycle_phasor(x: NDArray[Any], dt_s: float, frequency_hz: Frequency, order: int = 1) -> ComplexSamples:
@@ -103,7 +97,7 @@ def one_cycle_phasor(x: NDArray[Any], dt_s: float, frequency_hz: Frequency, orde
     MeasurementError
         When a cycle has fewer than two samples.
     """
-    return 2 * _one_cycle_average(x * turning(x.shape[-1], dt_s, order * frequency_hz), 1 / (frequency_hz * dt_s))
+    return _one_cycle_average(x * turning(x.shape[-1], dt_s, order * frequency_hz), 1 / (frequency_hz * dt_s), 2.0)
 
 
 def one_cycle_mean(x: Samples, dt_s: float, frequency_hz: Frequency) -> Samples:
@@ -115,49 +109,10 @@ def one_cycle_mean(x: Samples, dt_s: float, frequency_hz: Frequency) -> Samples:
     return mean
 
 
-def _one_cycle_average(y: NDArray[Any], cycle: Frequency) -> NDArray[Any]:
-    # By trapezoids the integral of a sinusoid is exact but for one factor, the same at all samples, so its difference
-    # over a cycle vanishes where it should.
+def _one_cycle_average(y: NDArray[Any], cycle: Frequency, gain: float = 1.0) -> NDArray[Any]:
     if isinstance(cycle, np.ndarray):
-        return _tracking_average(y, cycle)
-    integral = running_integral(y)
-    back = math.ceil(cycle - _ROUND_OFF)
-    average = _unknown_until_a_cycle(y, back)
-    count = y.shape[-1] - back - 1
-    if count > 0:
-        nodes = enumerate(_cubic_weights(max(back - cycle, 0.0)))
-        past = sum(weight * integral[..., node : node + count] for node, weight in nodes)
-        average[..., back + 1 :] = (integral[..., back + 1 :] - past) / cycle
-    return average
-
-
-def _tracking_average(y: NDArray[Any], cycle: Samples) -> NDArray[Any]:
-    """As `_one_cycle_average`, with a cycle of its own (in samples) at each sample."""
-    integral = running_integral(y)
-    back = np.ceil(cycle - _ROUND_OFF).astype(np.intp)
-    average = _unknown_until_a_cycle(y, int(back.min(initial=2)))
-    now = np.flatnonzero(np.arange(len(cycle)) > back)
-    first = now - back[now] - 1
-    nodes = enumerate(_cubic_weights(np.maximum(back - cycle, 0.0)[now]))
-    past = sum(weight * integral[..., first + node] for node, weight in nodes)
-    average[..., now] = (integral[..., now] - past) / cycle[now]
-    return average
-
-
-def _unknown_until_a_cycle(y: NDArray[Any], back: int) -> NDArray[Any]:
-    if back < 2:
-        raise MeasurementError("fewer than two samples a cycle")
-    return np.full(y.shape, np.nan * (1 + 1j) if np.iscomplexobj(y) else np.nan)
-
-
-def _cubic_weights(f: Any) -> tuple[Any, Any, Any, Any]:
-    """Lagrange weights of the nodes -1, 0, 1, 2 for a point between 0 and 1: the value one cycle ago."""
-    return (
-        -f * (f - 1) * (f - 2) / 6,
-        (f + 1) * (f - 1) * (f - 2) / 2,
-        -(f + 1) * f * (f - 2) / 2,
-        (f + 1) * f * (f - 1) / 6,
-    )
+        return CycleWindows(cycle).average(y, gain)
+    return steady_average(y, cycle, gain)
 
 
 def whole_cycles(n: int, dt_s: float, frequency_hz: float) -> WholeCycles:
@@ -172,11 +127,11 @@ def whole_cycles(n: int, dt_s: float, frequency_hz: float) -> WholeCycles:
         When the samples do not hold one cycle.
     """
     cycle = 1 / (frequency_hz * dt_s)
-    cycles = math.floor((n + 1) / cycle + _ROUND_OFF)
+    cycles = math.floor((n + 1) / cycle + ROUND_OFF)
     if cycles < 1:
         raise MeasurementError(f"a window of {n * dt_s:.4f} s is shorter than one cycle of {frequency_hz:g} Hz")
     length = cycles * cycle
-    return WholeCycles(min(n, math.ceil(length - _ROUND_OFF)), length)
+    return WholeCycles(min(n, math.ceil(length - ROUND_OFF)), length)
 
 
 def components(x: Samples, dt_s: float, frequency_hz: float, order: int = 1, detrend: bool = False) -> ComplexSamples:
@@ -206,7 +161,8 @@ def components(x: Samples, dt_s: float, frequency_hz: float, order: int = 1, det
     cycles = whole_cycles(x.shape[-1], dt_s, frequency_hz)
     x = x[..., : cycles.samples]
     kernel = cycles.weights * turning(cycles.samples, dt_s, order * frequency_hz)
-    found: ComplexSamples = 2 * np.asarray((_without_line(x) if detrend else x) @ kernel)
+    x = _without_line(x) if detrend else x
+    found: ComplexSamples = 2 * np.asarray(weighted_sum(x, kernel.real) + 1j * weighted_sum(x, kernel.imag))
     return found
 
 
@@ -224,12 +180,21 @@ def mean(x: Samples, dt_s: float, frequency_hz: float) -> float:
         When the window does not hold one cycle.
     """
     cycles = whole_cycles(len(x), dt_s, frequency_hz)
-    return float(x[: cycles.samples] @ cycles.weights)
+    return float(weighted_sum(x[: cycles.samples], cycles.weights))
+
+
+def weighted_sum(x: Samples, weights: Samples) -> Samples:
+    """Sum of samples by their weights, shape (...).
+
+    Without the matrix library, which wakes threads of its own for a few ten thousand samples: they cost more than that.
+    """
+    product: Samples = np.einsum("...n,n->...", x, weights)
+    return product
 
 
 def _without_line(x: Samples) -> Samples:
     t = np.arange(x.shape[-1]) - 0.5 * (x.shape[-1] - 1)
     level = x.mean(axis=-1, keepdims=True)
-    slope = ((x - level) @ t)[..., np.newaxis] / (t @ t)
+    slope = (weighted_sum(x - level, t) / weighted_sum(t, t))[..., np.newaxis]
     detrended: Samples = x - level - slope * t
     return detrended

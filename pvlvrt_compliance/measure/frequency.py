@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.measure.fourier import AMPLITUDE_FLOOR, ComplexSamples, one_cycle_phasor
+from pvlvrt_compliance.measure.fourier import AMPLITUDE_FLOOR, ComplexSamples, turning
+from pvlvrt_compliance.measure.sliding import steady_average_at
 from pvlvrt_compliance.space_vectors import SQRT2_3, clarke
 from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
 
@@ -42,9 +43,7 @@ def fundamental_frequency(
     vector = clarke(*segment.three_phase(kind))
     frequency_hz = nominal_hz
     for _ in range(_ITERATIONS):
-        # SQRT2_3 / 2 of the space vector's own phasor is Fortescue's positive sequence of the three phases' phasors.
-        positive = SQRT2_3 / 2 * one_cycle_phasor(vector, segment.dt_s, frequency_hz)
-        correction_hz = _turning_hz(positive, segment.dt_s, 1 / (frequency_hz * segment.dt_s), floor)
+        correction_hz = _turning_hz(vector, segment.dt_s, frequency_hz, floor)
         frequency_hz += correction_hz
         if not abs(frequency_hz - nominal_hz) <= 0.5 * nominal_hz:
             break
@@ -53,15 +52,17 @@ def fundamental_frequency(
     raise MeasurementError(f"no steady frequency near {nominal_hz:g} Hz")
 
 
-def _turning_hz(phasor: ComplexSamples, dt_s: float, cycle: float, floor: float) -> float:
-    valid = phasor[math.ceil(cycle) + 1 :]
-    if len(valid) < 0.45 * cycle:
+def _turning_hz(vector: ComplexSamples, dt_s: float, frequency_hz: float, floor: float) -> float:
+    cycle = 1 / (frequency_hz * dt_s)
+    if len(vector) - math.ceil(cycle) - 1 < 0.45 * cycle:
         raise MeasurementError("the record is too short to measure its frequency: under one and a half cycles")
     stride = max(int(cycle / _ANGLES_A_CYCLE), 1)
-    valid = valid[::stride]
-    if not np.abs(valid).min() >= floor:
+    at = np.arange(math.ceil(cycle) + 1, len(vector), stride)
+    # SQRT2_3 / 2 of the space vector's own phasor, twice the average, is Fortescue's positive sequence of the phases.
+    positive = steady_average_at(vector * turning(len(vector), dt_s, frequency_hz), cycle, at, SQRT2_3)
+    if not np.abs(positive).min() >= floor:
         raise MeasurementError("no voltage or current to measure the frequency of")
-    angle = np.unwrap(np.angle(valid))
+    angle = np.unwrap(np.angle(positive))
     k = np.arange(len(angle)) - 0.5 * (len(angle) - 1)
     return float((angle @ k) / (k @ k) / (2 * np.pi * stride * dt_s))
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pvlvrt_compliance.measure.fourier import components, turning, whole_cycles
+from pvlvrt_compliance.measure.fourier import components, turning, weighted_sum, whole_cycles
 from pvlvrt_compliance.measure.harmonics import harmonic_amplitudes
 from pvlvrt_compliance.waveforms.container import Samples
 
@@ -161,7 +161,7 @@ def trd(x: Samples, dt_s: float, frequency_hz: float, rated_rms: float) -> Sampl
     window = whole_cycles(x.shape[-1], dt_s, frequency_hz)
     first = components(x, dt_s, frequency_hz)[..., np.newaxis]
     rest = x[..., : window.samples] - (first * turning(window.samples, dt_s, frequency_hz).conj()).real
-    fraction: Samples = np.sqrt((rest * rest) @ window.weights) / rated_rms
+    fraction: Samples = np.sqrt(weighted_sum(rest * rest, window.weights)) / rated_rms
     return fraction
 
 
@@ -176,5 +176,4 @@ def dc_component(x: Samples, dt_s: float, frequency_hz: float) -> Samples:
         When the window does not hold one cycle.
     """
     window = whole_cycles(x.shape[-1], dt_s, frequency_hz)
-    found: Samples = x[..., : window.samples] @ window.weights
-    return found
+    return weighted_sum(x[..., : window.samples], window.weights)

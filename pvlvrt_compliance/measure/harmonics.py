@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from pvlvrt_compliance.measure.fourier import ComplexSamples, turning, whole_cycles
+from pvlvrt_compliance.measure.fourier import ComplexSamples, whole_cycles
 from pvlvrt_compliance.waveforms.container import Samples
 
 FUNDAMENTAL_FLOOR = 1e-3
@@ -12,6 +12,7 @@ FUNDAMENTAL_FLOOR = 1e-3
 
 _EXACT = 1e-14
 _TINY = 1e-300
+_ONE_THREAD = 1 << 18  # products up to which the matrix library wakes no threads, which cost more than they give
 
 
 def harmonic_amplitudes(x: Samples, dt_s: float, frequency_hz: float, highest: int = 40) -> Samples:
@@ -41,7 +42,7 @@ def harmonic_amplitudes(x: Samples, dt_s: float, frequency_hz: float, highest: i
     """
     n = whole_cycles(x.shape[-1], dt_s, frequency_hz).samples
     carried = min(highest, (n - 1) // 2, math.ceil(0.5 / (frequency_hz * dt_s)) - 1)
-    projections = _projections(x[..., :n], turning(n, dt_s, frequency_hz), carried)
+    projections = _projections(x[..., :n], 2 * np.pi * frequency_hz * dt_s, carried)
     both_signs = np.concatenate([projections[:0:-1].conj(), projections])
     products = _inner_products(n, 2 * np.pi * frequency_hz * dt_s, carried)
     found = _least_squares(products, np.moveaxis(both_signs, 0, -1))
@@ -51,13 +52,23 @@ def harmonic_amplitudes(x: Samples, dt_s: float, frequency_hz: float, highest: i
     return amplitudes
 
 
-def _projections(x: Samples, turned: ComplexSamples, highest: int) -> ComplexSamples:
-    """Sum of x exp(-j h theta k) over the samples k, for h = 0 .. highest; shape (highest + 1, ...)."""
-    power = np.ones_like(turned)
-    sums = np.empty((highest + 1, *x.shape[:-1]), dtype=np.complex128)
-    for h in range(highest + 1):
-        sums[h] = x @ power
-        power *= turned
+def _projections(x: Samples, theta: float, highest: int) -> ComplexSamples:
+    """Sum of x exp(-j h theta k) over the samples k, for h = 0 .. highest; shape (highest + 1, ...).
+
+    In rows of about sqrt(n) samples: what turns in a row is the same for all of them, and what turns from row to row
+    for all samples of a row.
+    """
+    n, orders = x.shape[-1], np.arange(highest + 1)
+    length = math.isqrt(n) + 1
+    together = max(_ONE_THREAD // (2 * len(orders) * length), 1)
+    groups = -(-n // (length * together))
+    rows = np.zeros((*x.shape[:-1], groups, together, length))
+    rows.reshape(*x.shape[:-1], -1)[..., :n] = x
+    in_row = np.exp(-1j * theta * np.outer(np.arange(length), orders))
+    from_row = np.exp(-1j * theta * length * np.outer(np.arange(groups * together), orders))
+    of_rows = (rows @ in_row.view(np.float64)).view(np.complex128).reshape(*x.shape[:-1], *from_row.shape)
+    of_rows *= from_row
+    sums: ComplexSamples = np.moveaxis(of_rows.sum(axis=-2), -1, 0)
     return sums
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from pvlvrt_compliance.measure.fourier import ComplexSamples, Frequency, one_cycle_phasor
-from pvlvrt_compliance.space_vectors import fortescue
+from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_phasor
+from pvlvrt_compliance.measure.sliding import Frequency
 from pvlvrt_compliance.waveforms.container import Samples, Segment, ThreePhase
 
 
@@ -46,24 +46,28 @@ VOLTAGES = ("mean_phase", "lowest_phase", "highest_phase", "lowest_line_to_line"
 """Voltages that codes speak of besides V+."""
 
 
-def voltage_amplitude(phasors: ComplexSamples, quantity: str) -> Samples:
-    """Amplitude of the voltage that a code speaks of, in pu of its own nominal value, shape (n,).
+def amplitudes_for(phasors: ComplexSamples, quantity: str) -> Samples:
+    """Amplitudes that a voltage which a code speaks of is the mean or an extreme of, shape (3, n).
 
-    Line-to-line voltages are in pu of the nominal line-to-line voltage: 1 in a healthy grid, as the phase voltages.
+    Those of the phases, or line to line: these in pu of the nominal line-to-line voltage, 1 in a healthy grid as the
+    phase voltages are.
 
     Parameters
     ----------
     phasors : array, shape (3, n)
         Phase-to-neutral voltages (pu).
     quantity : str
-        ``positive_sequence``, ``mean_phase``, or ``lowest_`` or ``highest_`` of ``phase`` or ``line_to_line``.
+        One of `VOLTAGES`.
     """
-    if quantity == "positive_sequence":
-        positive: Samples = np.abs(fortescue(*phasors)[0])
-        return positive
-    if quantity.endswith("line_to_line"):
-        phasors = (phasors - np.roll(phasors, -1, axis=0)) / np.sqrt(3)
-    amplitudes = np.abs(phasors)
+    if not quantity.endswith("line_to_line"):
+        return np.abs(phasors)
+    amplitudes = np.stack([np.abs(phasors[k] - phasors[(k + 1) % 3]) for k in range(3)])
+    amplitudes /= np.sqrt(3)
+    return amplitudes
+
+
+def of_amplitudes(amplitudes: Samples, quantity: str) -> Samples:
+    """Mean or extreme of the amplitudes of `amplitudes_for`, shape (n,)."""
     if quantity == "mean_phase":
         mean: Samples = amplitudes.mean(axis=0)
         return mean

@@ -65,8 +65,9 @@ def sequence_current(u: ComplexSamples, i: ComplexSamples, floor: float = AMPLIT
         A peak; not a number where a phasor is not.
     """
     amplitude = np.abs(u)
-    along = np.where(amplitude >= floor, u / np.where(amplitude >= floor, amplitude, 1.0), np.nan) * i.conj()
-    return SequenceCurrent(active=along.real, reactive=along.imag)
+    power = u * i.conj()
+    per_volt = np.divide(1.0, amplitude, out=np.full(amplitude.shape, np.nan), where=amplitude >= floor)
+    return SequenceCurrent(active=power.real * per_volt, reactive=power.imag * per_volt)
 
 
 def negative_sequence_current(u: ComplexSamples, i: ComplexSamples, floor: float = AMPLITUDE_FLOOR) -> SequenceCurrent:

@@ -58,7 +58,8 @@ def step_response(
         raise MeasurementError("there is no change to measure a response of")
     if band.short + band.beyond <= 0:
         raise MeasurementError("the tolerance band has no width")
-    y = (y - initial) / change
+    y = y - initial
+    y /= change
     reaction, response = first_reached(t, y, 0.1), first_reached(t, y, 0.9)
     settled = last_entry(t, y, 1 - band.short, 1 + band.beyond)
     return StepResponse(
@@ -71,12 +72,12 @@ def step_response(
 
 
 def _after(t_s: Samples, x: Samples, event_s: float) -> tuple[Samples, Samples]:
-    after = t_s >= event_s
-    if not after.any():
+    first = int(np.searchsorted(t_s, event_s))
+    if first == len(t_s):
         raise MeasurementError(f"the series ends before the event at {event_s:.3f} s")
-    if not np.isfinite(x[after]).all():
+    if not np.isfinite(x[first:]).all():
         raise MeasurementError("the response has values that are not finite")
-    return t_s[after], x[after]
+    return t_s[first:], x[first:]
 
 
 def _since(event_s: float, t_s: float | None) -> float | None:
@@ -86,7 +87,8 @@ def _since(event_s: float, t_s: float | None) -> float | None:
 def first_reached(t: Samples, y: Samples, level: float) -> float | None:
     """First instant (s) at which a series is at or above a level, None when it never is; shapes (n,)."""
     reached = y >= level
-    return _crossing(t, y, int(reached.argmax()), level) if reached.any() else None
+    first = int(reached.argmax()) if len(reached) else 0
+    return _crossing(t, y, first, level) if len(reached) and reached[first] else None
 
 
 def last_entry(t: Samples, y: Samples, low: float, high: float) -> float | None:
@@ -99,10 +101,10 @@ def last_entry(t: Samples, y: Samples, low: float, high: float) -> float | None:
 
 def settled_from(outside: NDArray[np.bool_]) -> int | None:
     """First sample after the last that lies outside, shape (n,): 0 where none does, None where the last one does."""
-    last = np.flatnonzero(outside)
-    if not len(last):
+    since = int(outside[::-1].argmax()) if len(outside) else 0  # samples after the last one outside
+    if not len(outside) or not outside[len(outside) - 1 - since]:
         return 0
-    return int(last[-1]) + 1 if last[-1] + 1 < len(outside) else None
+    return len(outside) - since if since else None
 
 
 def _crossing(t: Samples, y: Samples, k: int, level: float) -> float:

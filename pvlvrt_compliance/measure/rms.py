@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from pvlvrt_compliance.measure.fourier import Frequency, one_cycle_mean, running_integral
+from pvlvrt_compliance.measure.fourier import one_cycle_mean
+from pvlvrt_compliance.measure.sliding import Frequency, running_integral
 from pvlvrt_compliance.waveforms.container import Samples
 
 # Of a half cycle: a refresh that misses its sample by less falls on it.

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from pvlvrt_compliance.measure.fourier import ComplexSamples, Frequency, one_cycle_phasor
-from pvlvrt_compliance.space_vectors import Sequences, fortescue
+from pvlvrt_compliance.measure.fourier import ComplexSamples, one_cycle_phasor
+from pvlvrt_compliance.measure.sliding import Frequency
+from pvlvrt_compliance.space_vectors import SQRT3_2, Sequences
 from pvlvrt_compliance.waveforms.container import Samples, Segment
 
 
@@ -29,7 +30,13 @@ def sequence_phasors(segment: Segment, kind: str, frequency_hz: Frequency) -> Se
     MeasurementError
         When a channel is missing.
     """
-    return Sequences(*fortescue(*_phase_phasors(segment, kind, frequency_hz)))
+    # Fortescue's sequences of the samples first: three signals are averaged either way, and sums of samples are cheap.
+    a, b, c = segment.three_phase(kind)
+    forward = np.empty(len(a), dtype=np.complex128)
+    forward.real = (a - 0.5 * (b + c)) / 3
+    forward.imag = (b - c) * (SQRT3_2 / 3)
+    turned = np.stack((forward, forward.conj(), (a + b + c) / 3))
+    return Sequences(*one_cycle_phasor(turned, segment.dt_s, frequency_hz))
 
 
 def phase_amplitudes(segment: Segment, kind: str, frequency_hz: Frequency) -> Samples:

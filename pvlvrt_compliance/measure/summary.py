@@ -133,8 +133,12 @@ def _measure_window(
         return None
     try:
         last = _last_part(waveforms, segment, span, frequency_hz)
-        frequency_hz = _frequency_of(last, nominal, frequency_hz, floors)
-        quantities = _voltages(segment, last, nominal, frequency_hz, floors)
+        own_hz = _window_frequency(last, nominal, frequency_hz, floors)
+        if own_hz is not None and abs(own_hz - frequency_hz) > floors.other_frequency_hz:
+            # Over many cycles a component at another frequency than the assumed one averages out.
+            frequency_hz = own_hz
+            own_hz = _window_frequency(last, nominal, frequency_hz, floors)
+        quantities = _voltages(segment, nominal, frequency_hz) | {"frequency_hz": own_hz}
         quantities |= _currents(segment, last, nominal, frequency_hz, floors)
         quantities |= _powers(segment, frequency_hz) | _dc_voltage(segment, frequency_hz)
     except MeasurementError:
@@ -161,7 +165,7 @@ def _has(segment: Segment, *kinds: str) -> bool:
     return all(name in segment.channels for name in names)
 
 
-def _voltages(segment: Segment, last: Segment, nominal: Nominal, frequency_hz: float, floors: Floors) -> Quantities:
+def _voltages(segment: Segment, nominal: Nominal, frequency_hz: float) -> Quantities:
     if not _has(segment, "u"):
         return {}
     phasors = components(np.stack(segment.three_phase("u")), segment.dt_s, frequency_hz)
@@ -169,17 +173,12 @@ def _voltages(segment: Segment, last: Segment, nominal: Nominal, frequency_hz: f
     return {
         "voltage_positive_pu": abs(positive) / nominal.phase_voltage_peak_v,
         "voltage_negative_pu": abs(negative) / nominal.phase_voltage_peak_v,
-        "frequency_hz": _window_frequency(last, nominal, frequency_hz, floors),
     }
 
 
-def _frequency_of(segment: Segment, nominal: Nominal, before_hz: float, floors: Floors) -> float:
-    """Frequency that a window is measured at: over many cycles a component at another one averages out."""
-    own_hz = _window_frequency(segment, nominal, before_hz, floors) if _has(segment, "u") else None
-    return before_hz if own_hz is None or abs(own_hz - before_hz) <= floors.other_frequency_hz else own_hz
-
-
 def _window_frequency(segment: Segment, nominal: Nominal, frequency_hz: float, floors: Floors) -> float | None:
+    if not _has(segment, "u"):
+        return None
     try:
         return fundamental_frequency(segment, frequency_hz, floor=floors.voltage_pu * nominal.phase_voltage_peak_v)
     except MeasurementError:

@@ -5,6 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pvlvrt_compliance.measure.durations import mean_over_time
+from pvlvrt_compliance.measure.extremes import largest
 from pvlvrt_compliance.waveforms.container import Samples
 
 _STEP_S = 1e-3
@@ -24,7 +26,9 @@ class Swing(NamedTuple):
     peak_to_peak: float
     mean: float
     at: int
-    """Sample that lies furthest from its straight line."""
+    """First sample that lies furthest from its straight line."""
+    ends: tuple[float, float]
+    """First and last value of the line, moved to the middle between what swings above and below it."""
 
 
 class Tone(NamedTuple):
@@ -37,15 +41,17 @@ class Tone(NamedTuple):
 
 def without_line(t_s: Samples, x: Samples, step_s: Samples) -> Samples:
     """A series less its least-squares straight line, shape (n,), each sample counting as long as it lasts."""
-    weight = step_s / step_s.sum()
-    since = t_s - t_s @ weight
-    level = x - x @ weight
-    spread = (weight * since) @ since
-    rest: Samples = level - (since * ((weight * since) @ level) / spread if spread > 0 else 0.0)
+    since = t_s - mean_over_time(t_s, step_s)
+    rest: Samples = x - mean_over_time(x, step_s)
+    lever = step_s * since
+    spread = (lever * since).sum()
+    if spread > 0:
+        since *= (lever * rest).sum() / spread
+        rest -= since
     return rest
 
 
-def swing(t_s: Samples, x: Samples, step_s: Samples) -> Swing:
+def swing(t_s: Samples, x: Samples, step_s: Samples, scale: float | None = None) -> Swing:
     """Peak to peak of a series about its straight line, but no more than it goes both up and down by.
 
     What only rises, however it does, is a recovery and no swing; of a sinusoid of one and a half periods or more its
@@ -55,17 +61,23 @@ def swing(t_s: Samples, x: Samples, step_s: Samples) -> Swing:
     ----------
     t_s, x, step_s : array, shape (n,)
         Instants (s), values, and how long each sample lasts (s).
+    scale : float
+        What the rounding of the values is a part of, same unit (`measure.extremes`); without it their own size.
     """
     rest = without_line(t_s, x, step_s)
-    size = min(float(np.ptp(rest)), to_and_fro(x))
-    return Swing(size, float(np.average(x, weights=step_s)), int(np.abs(rest).argmax()))
+    lowest, highest = float(rest.min()), float(rest.max())
+    size = min(highest - lowest, to_and_fro(x))
+    middle = (highest + lowest) / 2
+    ends = (float(x[0] - rest[0]) + middle, float(x[-1] - rest[-1]) + middle)
+    at = largest(np.abs(rest), float(np.abs(x).max()) if scale is None else scale).at
+    return Swing(size, mean_over_time(x, step_s), at, ends)
 
 
 def to_and_fro(x: Samples) -> float:
     """The smaller of a series' largest rise and its largest fall, each from any sample to a later one."""
-    rise = float((x - np.minimum.accumulate(x)).max())
-    fall = float((np.maximum.accumulate(x) - x).max())
-    return min(rise, fall)
+    if x.argmin() < x.argmax():  # then nothing falls further than from the lowest to the highest it rises
+        return float((np.maximum.accumulate(x) - x).max())
+    return float((x - np.minimum.accumulate(x)).max())
 
 
 def tone(t_s: Samples, x: Samples, step_s: Samples) -> Tone | None:

@@ -6,19 +6,20 @@ with follows the frequency three and a half cycles late, which matters to second
 """
 
 import math
+from bisect import bisect_left, insort
+from collections.abc import Callable
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.measure.fourier import (
     AMPLITUDE_FLOOR,
     ComplexSamples,
-    one_cycle_mean,
     one_cycle_phasor,
-    running_integral,
+    turning,
 )
 from pvlvrt_compliance.measure.sequences import sequence_phasors
+from pvlvrt_compliance.measure.sliding import CycleWindows, Frequency, running_integral
 from pvlvrt_compliance.space_vectors import SQRT2_3, Sequences, clarke
 from pvlvrt_compliance.waveforms.container import Samples, Segment
 
@@ -62,8 +63,10 @@ def tracked_frequency(segment: Segment, nominal_hz: float, kind: str = "u", floo
     MeasurementError
         When a channel is missing, or a cycle has fewer than two samples.
     """
-    vector = clarke(*segment.three_phase(kind))
-    assumed, since = np.full(len(vector), nominal_hz), 0
+    # SQRT2_3 / 2 of the space vector's own phasor is Fortescue's positive sequence of the three phases' phasors.
+    vector = SQRT2_3 / 2 * clarke(*segment.three_phase(kind))
+    assumed: Frequency = nominal_hz
+    tracked, since = np.full(len(vector), np.nan), 0
     for _ in range(_PASSES):
         found = _turning_hz(vector, segment.dt_s, nominal_hz, assumed, floor)
         known = np.flatnonzero(np.isfinite(found))
@@ -71,28 +74,39 @@ def tracked_frequency(segment: Segment, nominal_hz: float, kind: str = "u", floo
             return np.full(len(vector), np.nan)
         since = max(since, int(known[0]))
         # Before the first value nothing is reported, hence to assume that value there looks at no future.
-        assumed = np.clip(_held(found, float(found[known[0]])), (1 - RANGE) * nominal_hz, (1 + RANGE) * nominal_hz)
-    assumed[:since] = np.nan
-    assumed[np.logical_or.accumulate(~np.isfinite(vector))] = np.nan
-    return assumed
+        assumed = tracked = np.clip(
+            _held(found, float(found[known[0]])), (1 - RANGE) * nominal_hz, (1 + RANGE) * nominal_hz
+        )
+    tracked[:since] = np.nan
+    tracked[np.logical_or.accumulate(~np.isfinite(vector))] = np.nan
+    return tracked
 
 
-def _turning_hz(vector: ComplexSamples, dt_s: float, nominal_hz: float, assumed_hz: Samples, floor: float) -> Samples:
+def _turning_hz(vector: ComplexSamples, dt_s: float, nominal_hz: float, assumed_hz: Frequency, floor: float) -> Samples:
     """Frequency from the turning over one cycle; NaN where it is not known."""
-    # SQRT2_3 / 2 of the space vector's own phasor is Fortescue's positive sequence of the three phases' phasors.
-    positive = SQRT2_3 / 2 * one_cycle_phasor(vector, dt_s, assumed_hz)
-    cycle = 1 / (assumed_hz * dt_s)
+    positive, reference = _phasor_and_reference(vector, dt_s, nominal_hz, assumed_hz)
+    cycle = np.broadcast_to(1 / (assumed_hz * dt_s), vector.shape)
     now = np.arange(len(vector))
     ago = np.maximum(now - np.rint(cycle).astype(np.intp), 0)
     # The phasor has the angle at the middle of its window, less the mean of the angle it was turned back by.
-    reference = one_cycle_mean(2 * np.pi * dt_s * running_integral(assumed_hz - nominal_hz), dt_s, assumed_hz)
     middle_s = dt_s * (now - 0.5 * cycle)
     turned = np.angle(positive * positive[ago].conj()) + reference - reference[ago]
-    amplitude = np.minimum(np.abs(positive), np.abs(positive[ago]))
-    known = amplitude >= floor
+    amplitude = np.abs(positive)
+    known = np.minimum(amplitude, amplitude[ago]) >= floor
     found = np.full(len(vector), np.nan)
     found[known] = nominal_hz + turned[known] / (2 * np.pi * (middle_s - middle_s[ago])[known])
     return found
+
+
+def _phasor_and_reference(
+    vector: ComplexSamples, dt_s: float, nominal_hz: float, assumed_hz: Frequency
+) -> tuple[ComplexSamples, Samples]:
+    """One-cycle phasor, and the mean angle over its cycle that it was turned back by besides nominal."""
+    if not isinstance(assumed_hz, np.ndarray):
+        return one_cycle_phasor(vector, dt_s, assumed_hz), np.zeros(len(vector))
+    windows = CycleWindows(1 / (assumed_hz * dt_s))
+    reference = windows.average(2 * np.pi * dt_s * running_integral(assumed_hz - nominal_hz))
+    return windows.average(vector * turning(len(vector), dt_s, assumed_hz), 2.0), reference
 
 
 def _held(x: Samples, before: float) -> Samples:
@@ -138,13 +152,17 @@ def tracked_sequences(segment: Segment, kind: str, nominal_hz: float) -> Sequenc
 
 
 def steering_frequency(
-    segment: Segment, kind: str, nominal_hz: float, floor: float = AMPLITUDE_FLOOR
+    segment: Segment,
+    kind: str,
+    nominal_hz: float,
+    floor: float = AMPLITUDE_FLOOR,
+    tracked: Callable[[Segment, float, str, float], Samples] = tracked_frequency,
 ) -> tuple[Samples, int]:
     """Frequency that one-cycle windows go by, and the sample from which they may be used.
 
     Median of the last five cycles of `tracked_frequency`, refreshed 16 times a cycle. Before the sample returned the
     values are assumed, so that every window after it is whole. Parameters and errors as `tracked_sequences`; ``floor``
-    (V or A, peak) as `tracked_frequency`.
+    (V or A, peak) as `tracked_frequency`, or what stands in for it as ``tracked``.
 
     Returns
     -------
@@ -152,9 +170,9 @@ def steering_frequency(
         Frequency (Hz), finite at every sample; index of the first sample that is measured.
     """
     try:
-        measured = tracked_frequency(segment, nominal_hz, floor=floor)
+        measured = tracked(segment, nominal_hz, "u", floor)
     except MeasurementError:
-        measured = tracked_frequency(segment, nominal_hz, kind, floor)
+        measured = tracked(segment, nominal_hz, kind, floor)
     cycle = 1 / (nominal_hz * segment.dt_s)
     latest = math.ceil(2 * cycle / (1 - RANGE)) + 4  # by then two cycles of any frequency have passed
     known = np.flatnonzero(np.isfinite(measured[:latest]))
@@ -167,5 +185,17 @@ def _running_median(x: Samples, stride: int) -> Samples:
     """Median of the values of five cycles, every ``stride`` samples; held in between, shape (n,)."""
     width = _STEERING_CYCLES * _STEERING_A_CYCLE
     thinned = np.pad(x[::stride], (width - 1, 0), mode="edge")
-    median: Samples = np.median(sliding_window_view(thinned, width), axis=-1)
-    return np.repeat(median, stride)[: len(x)]
+    return np.repeat(_sliding_median(thinned.tolist(), width), stride)[: len(x)]
+
+
+def _sliding_median(x: list[float], width: int) -> list[float]:
+    """Median of every ``width`` numbers in a row: they stay sorted while one comes and one goes."""
+    ordered = sorted(x[:width])
+    low, high = (width - 1) // 2, width // 2
+    medians = [(ordered[low] + ordered[high]) / 2]
+    for gone, new in zip(x, x[width:], strict=False):
+        if new != gone:
+            del ordered[bisect_left(ordered, gone)]
+            insort(ordered, new)
+        medians.append((ordered[low] + ordered[high]) / 2)
+    return medians

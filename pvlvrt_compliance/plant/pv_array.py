@@ -2,12 +2,11 @@
 
 import math
 from collections.abc import Callable
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import lambertw
 
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.kernel import kernel
@@ -21,6 +20,7 @@ STC_TEMPERATURE = 25.0
 _NEWTON_TOLERANCE = 1e-4
 _NEWTON_STEPS = 50
 _BISECTIONS = 60
+_KEPT = 64  # points of the characteristic that are known: the tests of a run have few weathers
 
 
 class Module(NamedTuple):
@@ -185,16 +185,30 @@ def current_at(v: float, irradiance: float, p: PvParams) -> float:
     shunted = p.a * (1 + p.R_s * G_sh)
     source = p.I_L * G + p.I_0
     argument = p.R_s * p.I_0 / shunted * math.exp((p.R_s * source + v_module) / shunted)
-    i = (source - v_module * G_sh) / (1 + p.R_s * G_sh) - p.a / p.R_s * float(lambertw(argument).real)
+    i = (source - v_module * G_sh) / (1 + p.R_s * G_sh) - p.a / p.R_s * lambert_w(argument)
     return p.n_parallel * i
 
 
+def lambert_w(x: float) -> float:
+    """W where W exp(W) = x, for x of 0 and more, to two units of the last digit.
+
+    scipy.special has it, too, but importing that takes as long as numba.
+    """
+    # log(1 + x) is never below W, and W exp(W) - x is convex: Newton falls until rounding alone is left.
+    w = math.log1p(x)
+    while (lower := w - (w - x * math.exp(-w)) / (1 + w)) < w:
+        w = lower
+    return w
+
+
+@lru_cache(maxsize=_KEPT)
 def open_circuit_voltage(irradiance: float, p: PvParams) -> float:
     """Voltage of the array without current (V)."""
     v_far = 2 * p.n_series * p.a * math.log(p.I_L / p.I_0)
     return _zero_of(lambda v: current_at(v, irradiance, p), 0.0, v_far)
 
 
+@lru_cache(maxsize=_KEPT)
 def maximum_power_point(irradiance: float, p: PvParams) -> Operating:
     """Voltage (V) and power (W) at which the array gives most: where dP/dV = 0."""
 
@@ -208,6 +222,7 @@ def maximum_power_point(irradiance: float, p: PvParams) -> Operating:
     return Operating(v=v, p=v * current_at(v, irradiance, p))
 
 
+@lru_cache(maxsize=_KEPT)
 def voltage_at_power(power: float, irradiance: float, p: PvParams) -> float:
     """Voltage right of the maximum-power point at which the array gives ``power`` (W, not above the maximum) (V)."""
     best = maximum_power_point(irradiance, p)

@@ -16,7 +16,14 @@ from pvlvrt_compliance.profile.curves import Envelope
 from pvlvrt_compliance.profile.head import Head
 from pvlvrt_compliance.profile.ids import ID_PATTERN
 from pvlvrt_compliance.profile.procedure import Conditions, Detection, Procedure, TestCase, TestRow, Windows
-from pvlvrt_compliance.profile.requirements import Kinds, Requirements, RideThrough, requirements_of
+from pvlvrt_compliance.profile.requirements import (
+    Kinds,
+    Requirements,
+    RideThrough,
+    kinds_of,
+    requirements_of,
+    unfilled,
+)
 from pvlvrt_compliance.profile.thresholds import STANDARD_THRESHOLDS, Thresholds
 from pvlvrt_compliance.scenario.sag import Sag
 
@@ -46,6 +53,11 @@ class Profile(Head):
         if regions is None or self.procedure.corners is None:
             return self.rows
         return (*self.rows, *corner_rows(regions, self.procedure.corners))
+
+    @cached_property
+    def expanded(self) -> dict[int, tuple[TestCase, ...]]:
+        """Runs of those rows that have been asked for, by their places."""
+        return {}
 
     @property
     def envelope(self) -> Envelope | None:
@@ -83,7 +95,18 @@ class Profile(Head):
         UsageError
             When a replaced field is unknown or out of its range.
         """
-        return tuple(case for row in self.all_rows for case in expand(row, self.procedure, self.envelope, overrides))
+        if overrides:
+            return tuple(
+                case for row in self.all_rows for case in expand(row, self.procedure, self.envelope, overrides)
+            )
+        return tuple(case for index in range(len(self.all_rows)) for case in self._cases_of(index))
+
+    def _cases_of(self, index: int) -> tuple[TestCase, ...]:
+        """Every run of a row, as the table has it: made once, as whoever reads a profile needs them several times."""
+        if index not in self.expanded:
+            row = self.all_rows[index]
+            self.expanded[index] = tuple(expand(row, self.procedure, self.envelope, {}))
+        return self.expanded[index]
 
     def row_of(self, test: TestCase) -> str:
         """Id of the row of the test table that a test is a run of; nothing of a sag of the user's own.
@@ -135,8 +158,8 @@ class Profile(Head):
             if item.confidence not in VERIFIED
         ]
         doubtful: dict[str, list[str]] = {}
-        for row in self.all_rows:
-            cases = {case.id for case in expand(row, self.procedure, self.envelope, {})}
+        for index, row in enumerate(self.all_rows):
+            cases = {case.id for case in self._cases_of(index)}
             if row.confidence not in VERIFIED and (case_ids is None or not cases.isdisjoint(case_ids)):
                 doubtful.setdefault(f"{row.confidence} ({row.source})", []).append(row.id)
         return (*sentences, *(f"tests {', '.join(ids)}: {mark}" for mark, ids in doubtful.items()))
@@ -152,7 +175,7 @@ class Profile(Head):
             place = ("tests", index) if index < len(self.rows) else ("procedure", "corners")
             problems += [((*place, "checks"), text) for text in self._unknown_checks(row)]
             try:
-                cases = [case.id for case in expand(row, self.procedure, self.envelope, {})]
+                cases = [case.id for case in self._cases_of(index)]
                 twice = [name for k, name in enumerate(cases) if name in ids or name in cases[:k]]
                 problems += [((*place, "id"), f"the id {name!r} occurs twice") for name in twice[:1]]
                 ids.update(cases)
@@ -160,6 +183,10 @@ class Profile(Head):
                 key, _, text = str(error).partition(": ")
                 problems.append(((*place, *key.split(".")), text))
         return problems
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For another process, as of `Requirements`."""
+        return unfilled, (profile_of, kinds_of(type(self.requirements))), self.__getstate__()
 
     def _unknown_checks(self, row: TestRow) -> Iterator[str]:
         """What is wrong with the kinds that judge a row."""

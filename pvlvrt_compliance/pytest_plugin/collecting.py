@@ -15,11 +15,12 @@ from pvlvrt_compliance.pytest_plugin.words import reasons, red_in_words
 from pvlvrt_compliance.report.gate import STOPS, Outcome, told_of
 from pvlvrt_compliance.results import JUDGED, Status, TestResult
 from pvlvrt_compliance.settings.effective import Effective, effective
-from pvlvrt_compliance.settings.finding import distrust, read_file
+from pvlvrt_compliance.settings.finding import read_file
 from pvlvrt_compliance.settings.reading import CONFIG
 from pvlvrt_compliance.study.job import Asked, make_job
 from pvlvrt_compliance.study.one_by_one import OneByOne
 from pvlvrt_compliance.study.selection import Assignment
+from pvlvrt_compliance.trust import distrust
 
 _OF_PYTEST = ("last_failed", "failed_first", "fail_fast")
 """What pytest does by options of its own."""

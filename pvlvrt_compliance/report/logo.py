@@ -3,7 +3,6 @@
 import base64
 import re
 from pathlib import Path
-from xml.etree import ElementTree
 
 from pvlvrt_compliance.errors import UsageError
 
@@ -79,6 +78,8 @@ def _is_svg(content: bytes) -> bool:
     """Whether it is an SVG without a document type, in which one could define entities without end."""
     if b"<!DOCTYPE" in content or b"<!ENTITY" in content or b"<svg" not in content:
         return False
+    from xml.etree import ElementTree
+
     try:
         return ElementTree.fromstring(content).tag == _SVG
     except (ElementTree.ParseError, ValueError, LookupError):

@@ -23,5 +23,8 @@ OLD, NEW = "old", "new"
 REPORT_MARKDOWN, BADGE, VERDICTS_CSV = "report.md", "badge.svg", "verdicts.csv"
 SUMMARY_GITHUB, QUALITY_GITLAB = "github-summary.md", "gl-code-quality-report.json"
 
-ON_REQUEST = (REPORT_PDF, REPORT_MARKDOWN, BADGE, VERDICTS_CSV, SUMMARY_GITHUB, QUALITY_GITLAB)
+SHARD = "shard.zip"
+"""What a part of a run needs to be merged with the others, besides its results and records."""
+
+ON_REQUEST = (SHARD, REPORT_PDF, REPORT_MARKDOWN, BADGE, VERDICTS_CSV, SUMMARY_GITHUB, QUALITY_GITLAB)
 """Those that only some runs write."""

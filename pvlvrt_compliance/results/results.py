@@ -24,7 +24,7 @@ _NOT_FOUND: dict[str, Any] = {
     "report": True,
     "interrupted": True,
     "baseline": True,
-    "provenance": {"created", "command", "files", "settings"},
+    "provenance": {"created", "command", "files", "settings", "reuse"},
     "tests": {"__all__": {"wall_time_s": True, "checks": {"__all__": {"known", "known_reason", "worse"}}}},
 }
 

@@ -81,21 +81,34 @@ class Effective:
 
     @property
     def provenance(self) -> dict[str, Any]:
-        """The same as results keep it; empty where everything was typed."""
-        if not self.in_words:
+        """The same as results keep it; empty where everything was typed, or says nothing of them."""
+        if not self._is_of_results:
             return {}
         file = self.found.file
         of_file = {} if file is None else {"file": file.source.origin, "digest": _digest(file.source.text)}
-        values = {key: {"value": value.value, "from": value.origin} for key, value in self.written_down.items()}
+        hows = {setting.key for setting in self.settings.values() if setting.is_how}
+        values = {
+            key: {"value": value.value, "from": value.origin}
+            for key, value in self.written_down.items()
+            if key not in hows
+        }
         return {**of_file, "values": values}
+
+    @property
+    def _is_of_results(self) -> bool:
+        """Whether anything was written down that results carry."""
+        hows = {setting.key for setting in self.settings.values() if setting.is_how}
+        return self.found.file is not None or not hows.issuperset(self.written_down)
 
     def command(self, typed: Sequence[str]) -> tuple[str, ...]:
         """Words that make the run again without file and environment: those typed, where neither holds."""
-        return (typed[0], "--isolated", *self._options()) if self.in_words else tuple(typed)
+        if self._is_of_results:
+            return (typed[0], "--isolated", *self._options())
+        return tuple(_without(typed, {setting.option for setting in self.settings.values() if setting.is_how}))
 
     def _options(self) -> Iterator[str]:
         for name, setting in self.settings.items():
-            value = self.values[name].value if name in self.values else None
+            value = self.values[name].value if name in self.values and not setting.is_how else None
             if value is True:
                 yield setting.option
             elif value is not None and value is not False:
@@ -179,6 +192,17 @@ def effective(
         warnings=tuple(warnings),
         settings=by_field,
     )
+
+
+def _without(typed: Sequence[str], options: Collection[str]) -> Iterator[str]:
+    """Words without some options and their values."""
+    words = iter(typed)
+    for word in words:
+        name, equals, _ = word.partition("=")
+        if name not in options:
+            yield word
+        elif not equals:
+            next(words, None)
 
 
 def _typed(name: str, given: Any, further: Collection[str]) -> Value:

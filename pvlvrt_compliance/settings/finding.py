@@ -1,7 +1,6 @@
 """Which file of settings holds: the nearest upwards, within what is the user's own."""
 
 import os
-import stat
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -12,6 +11,7 @@ from pvlvrt_compliance.data.repository import begins_repository
 from pvlvrt_compliance.data.syntax import Table
 from pvlvrt_compliance.errors import UsageError, listed
 from pvlvrt_compliance.settings import FILE, PROJECT_FILE
+from pvlvrt_compliance.trust import distrust
 
 TABLE = ("tool", "pvlvrt")
 """Keys of the table in a `PROJECT_FILE`."""
@@ -139,21 +139,3 @@ def _folders(start: Path) -> Iterator[tuple[Path, str]]:
             yield folder, "the root of the repository" if is_root else "the home folder"
             return
         yield folder, "the root of the file system"
-
-
-def distrust(path: Path) -> str:
-    """Why a file may be of somebody whom the user does not trust; empty where nothing speaks against it.
-
-    root could change what the command itself does, and is trusted. Windows has neither owners nor modes of this kind.
-    """
-    user = getattr(os, "getuid", None)
-    if user is None:
-        return ""
-    try:
-        owners = {path.lstat().st_uid, path.stat().st_uid}
-        mode = path.stat().st_mode
-    except OSError as error:
-        return f"it cannot be looked at ({error.strerror})"
-    if owners - {user(), 0}:
-        return "it belongs to somebody else"
-    return "anybody may write it" if mode & stat.S_IWOTH else ""

@@ -29,12 +29,15 @@ class Setting(NamedTuple):
         Of its value: bool, float, str or ``list[str]``.
     metavar : str
         What the help shows in place of the value; says which values are paths, and which a table may hold.
+    is_how : bool
+        Whether it says how a run is made, of which its results are the same: they do not carry it.
     """
 
     field: str
     option: str
     kind: Any
     metavar: str
+    is_how: bool = False
 
     @property
     def key(self) -> str:

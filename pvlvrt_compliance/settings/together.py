@@ -19,7 +19,9 @@ _OF_A_SHAPE = ("phases", "two_phase", "sag_type")
 _BELONG = {"mapping": "controller", "tests": "profiles", "skip": "profiles", "checks": "profiles"}
 """A field, and the one whose value it was written for where both stand in one place."""
 
-_NEEDS = {"mapping": "controller", "baseline_tolerance": "baseline"} | dict.fromkeys(OF_A_SAG[1:], "sag")
+_NEEDS = {"mapping": "controller", "baseline_tolerance": "baseline", "reuse_size": "reuse"} | dict.fromkeys(
+    OF_A_SAG[1:], "sag"
+)
 """A field, and the one without which it means nothing."""
 
 _SET, _OF_A_CONTROLLER = "settings", "controller."

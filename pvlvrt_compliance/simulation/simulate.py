@@ -30,6 +30,8 @@ from pvlvrt_compliance.simulation.translate import (
 from pvlvrt_compliance.waveforms import Segment, Waveforms
 from pvlvrt_compliance.waveforms.breaker import opened_at_s
 
+_ROWS_AT_ONCE = 512
+
 
 def simulate(  # type: ignore[no-untyped-def]
     scenario: Scenario, parameters: Parameters, run=run, *, thin: bool = True
@@ -136,11 +138,19 @@ def record_of(
     segments = []
     row = 0
     for first, step, rows in zip(plan.first.tolist(), plan.step.tolist(), plan.rows, strict=False):
-        columns = np.ascontiguousarray(samples[row : row + rows].T)
+        columns = _columns(samples[row : row + rows])
         segments.append(Segment(first * T_reg, step * T_reg, dict(zip(channels, columns, strict=True))))
         row += rows
     settling = tuple(segment for segment in segments if segment.t0_s < 0)
     return Waveforms(tuple(segments[len(settling) :]), settling, tripped_at_s)
+
+
+def _columns(samples: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rows turned into columns, some at a time: so many stay in the fast memory while they are turned."""
+    columns = np.empty(samples.shape[::-1])
+    for first in range(0, len(samples), _ROWS_AT_ONCE):
+        columns[:, first : first + _ROWS_AT_ONCE] = samples[first : first + _ROWS_AT_ONCE].T
+    return columns
 
 
 def available_power_w(scenario: Scenario, parameters: Parameters) -> float:

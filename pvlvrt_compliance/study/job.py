@@ -3,38 +3,41 @@
 Nothing is written or simulated here.
 """
 
-import math
-import re
+import time
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from pvlvrt_compliance.checks.kinds import INSTALLED_KINDS
 from pvlvrt_compliance.controllers.bundled import BUNDLED
-from pvlvrt_compliance.data.search_path import is_path, known_profiles
-from pvlvrt_compliance.errors import UsageError, spelled_of
-from pvlvrt_compliance.profile.loading import load_profile
+from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.results.baseline import TOLERANCE
 from pvlvrt_compliance.scenario.events import Event
-from pvlvrt_compliance.scenario.files import load_events
-from pvlvrt_compliance.scenario.quantities import in_units_of
-from pvlvrt_compliance.simulation.parameters import Parameters, own_parameters, parameters_from
+from pvlvrt_compliance.simulation.parameters import Parameters
+from pvlvrt_compliance.study import from_asked
 from pvlvrt_compliance.study.baseline.applying import Held
 from pvlvrt_compliance.study.baseline.reading import read_baseline
 from pvlvrt_compliance.study.choosing import choose
-from pvlvrt_compliance.study.own_sag import sag_tests
+from pvlvrt_compliance.study.from_asked import named_by_file, parameters_of, profiles_of, spelled_field, tests_of
+from pvlvrt_compliance.study.reuse.opening import limit_of
 from pvlvrt_compliance.study.selection import Assignment
+from pvlvrt_compliance.study.shards.shard import Shard, shard_of
 from pvlvrt_compliance.units import parse_fraction
 
-ALL = "all"
-"""In place of a name: every profile that ships or is found."""
+ALL = from_asked.ALL
+Spell = from_asked.Spell
 
 KEEP_ALL, KEEP_FAILED = "all", "failed"
 WAVEFORMS_KEPT = (KEEP_ALL, KEEP_FAILED, "none")
 
-Spell = Callable[[str], str]
-"""How whoever asks writes the name of a field of `Asked`: a message names what he has typed."""
+AUTO = "auto"
+"""As many tests at once as there are cores."""
+
+LOCAL = "local"
+"""In place of a scheduler's address: one of this machine, for as long as the run lasts."""
+
+HOW = ("jobs", "cluster")
+"""Fields of `Asked` that say how tests are run: what is found is the same."""
 
 Factory = Callable[..., Any]
 """A controller's class, or a function that makes one."""
@@ -45,22 +48,8 @@ _SAG_FIELDS = ("phases", "two_phase", "sag_type", "duration", "point_on_wave", "
 _OF_PROFILES = ("tests", "skip", "last_failed", "failed_first")
 """Fields that select from the tests of profiles."""
 
-# Fields of the scenario by the name that they have here.
-_SCENARIO = {
-    "frequency": "frequency_hz",
-    "temperature": "cell_temperature_c",
-    "scr": "scr",
-    "xr": "xr",
-    "transformer": "vector_group",
-    "events": "events",
-    "irradiance": "irradiance_w_m2",
-    "point_on_wave": "point_on_wave_deg",
-    "duration": "duration_s",
-}
-_SET = re.compile(r"--set ([^\s:]*)")
-"""How a message begins that is about a parameter."""
-
-_OVERRIDES = ("frequency", "temperature", "scr", "xr", "transformer")
+_OF_OTHERS = ("fail_fast", "last_failed", "failed_first")
+"""Fields by which a test is run, or not, for what has become of others."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,6 +94,16 @@ class Asked:
         File of known failures.
     baseline_tolerance : str or float, optional
         By what share a margin may be lost against it, ``1%`` or 0.01; by default `TOLERANCE`.
+    shard : str, optional
+        Which part of the tests is run, and of how many: ``2/5``.
+    jobs : str or int, optional
+        How many tests are run at once, each in a process of its own, or `AUTO`; 1 is one after the other on one core.
+        None: in this process, where a record is made while another is judged.
+    reuse, reuse_size : optional
+        Folder of stored records, of which none is simulated again, and what they may take: ``2GB``, or in GB.
+    cluster : str, optional
+        Address of a dask scheduler whose workers run the tests, or `LOCAL`: one that is started on this machine, with
+        as many workers as ``jobs`` says.
     """
 
     profiles: Sequence[str | Profile] = ()
@@ -135,6 +134,11 @@ class Asked:
     waveforms: str = KEEP_ALL
     baseline: str | None = None
     baseline_tolerance: str | float | None = None
+    shard: str | None = None
+    jobs: str | int | None = None
+    reuse: str | None = None
+    reuse_size: str | float | None = None
+    cluster: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -156,6 +160,13 @@ class Job:
     waveforms: str = KEEP_ALL
     profile_files: Mapping[str, str] = field(default_factory=dict)  # by id, as far as they were named by their file
     baseline: Held | None = None  # what is known, read before anything is run
+    shard: Shard | None = None  # which part of the run it is
+    size: int = 0  # how many tests the whole run has; of a part, that which it is of
+    jobs: str | int | None = None  # as of `Asked`, checked
+    reuse: str | None = None  # folder of stored records
+    reuse_bytes: int = 0  # what these may take
+    cluster: str | None = None
+    made_ns: int = field(default_factory=time.time_ns)  # when this was made: records that were used since then stay
 
 
 def make_job(asked: Asked, spell: Spell = str, *, last_run: str | None = None) -> Job:
@@ -178,22 +189,25 @@ def make_job(asked: Asked, spell: Spell = str, *, last_run: str | None = None) -
     if asked.controller == BUNDLED:
         asked = replace(asked, controller=None)
     _check_together(asked, spell)
-    profiles = _profiles(asked.profiles, spell)
-    parameters, given = _parameters(asked, spell)
+    profiles = profiles_of(asked.profiles, spell)
+    parameters, given = parameters_of(asked, spell)
     try:
-        everything = _tests(profiles, asked, spell)
+        everything = tests_of(profiles, asked, spell)
     except UsageError as error:
         field, colon, rest = str(error).partition(":")
-        raise UsageError(_spelled_field(field, spell) + colon + rest) from None
+        raise UsageError(spelled_field(field, spell) + colon + rest) from None
     choice = choose(everything, profiles, asked, spell, last_run)
     if not choice.tests:
         names = ", ".join(profile.id for profile in profiles)
         raise UsageError(f"{names}: the profile has no tests of its own; give one, for instance {spell('sag')} 90%")
+    shard, tests, elsewhere = _part(asked, choice.tests, spell)
     return Job(
         profiles=profiles,
-        tests=choice.tests,
+        tests=tests,
         left_out=choice.left_out,
-        not_selected=choice.not_selected,
+        not_selected=(*choice.not_selected, *elsewhere),
+        shard=shard,
+        size=len(choice.tests),
         first=choice.first,
         checks=asked.checks,
         fail_fast=asked.fail_fast,
@@ -203,8 +217,12 @@ def make_job(asked: Asked, spell: Spell = str, *, last_run: str | None = None) -
         given=given,
         mapping=asked.mapping,
         waveforms=asked.waveforms,
-        profile_files=_named_by_file(asked.profiles, profiles),
+        profile_files=named_by_file(asked.profiles, profiles),
         baseline=_baseline(asked, spell),
+        jobs=_jobs(asked.jobs, spell),
+        reuse=asked.reuse,
+        reuse_bytes=limit_of(asked, spell),
+        cluster=_cluster(asked, spell),
     )
 
 
@@ -221,6 +239,9 @@ def _check_together(asked: Asked, spell: Spell) -> None:
         raise UsageError(f"{spell('mapping')} {own} {spell('controller')}")
     if asked.mapping is not None and not isinstance(asked.controller, str):
         raise UsageError(f"{spell('mapping')}: a Python class takes its measurements by their names, without a file")
+    if asked.shard is not None and (given := next((name for name in _OF_OTHERS if getattr(asked, name)), None)):
+        said = "goes by what other tests have come to, of which some are in other parts; it does not go with"
+        raise UsageError(f"{spell(given)} {said} {spell('shard')}")
     if asked.waveforms not in WAVEFORMS_KEPT:
         raise UsageError(f"{spell('waveforms')} {asked.waveforms}: allowed are {', '.join(WAVEFORMS_KEPT)}")
 
@@ -235,66 +256,42 @@ def _baseline(asked: Asked, spell: Spell) -> Held | None:
     return Held(read_baseline(asked.baseline, spell("baseline")), tolerance)
 
 
+def _part(
+    asked: Asked, tests: tuple[Assignment, ...], spell: Spell
+) -> tuple[Shard | None, tuple[Assignment, ...], tuple[Assignment, ...]]:
+    """The part that is asked for, if one is, its tests, and those of the others."""
+    if asked.shard is None:
+        return None, tests, ()
+    from pvlvrt_compliance.study.shards.dividing import tests_in  # which knows what jobs are
+
+    shard = shard_of(asked.shard, spell("shard"))
+    chosen = tests_in(shard, tests, spell("shard"))
+    keys = {item.key for item in chosen}
+    return shard, chosen, tuple(item for item in tests if item.key not in keys)
+
+
+def _jobs(given: str | int | None, spell: Spell) -> str | int | None:
+    if given is None or given == AUTO:
+        return given
+    try:
+        count = int(given)
+    except ValueError:
+        count = 0
+    if count < 1:
+        raise UsageError(f"{spell('jobs')} {given}: give how many tests are run at once, 1 or more, or {AUTO}")
+    return count
+
+
+def _cluster(asked: Asked, spell: Spell) -> str | None:
+    if asked.cluster not in (None, LOCAL) and asked.jobs not in (None, AUTO):
+        own = f"goes with {spell('cluster')} {LOCAL} only: a scheduler has the workers that it has"
+        raise UsageError(f"{spell('jobs')} {own}")
+    if asked.cluster not in (None, LOCAL) and asked.reuse is not None:
+        raise UsageError(f"{spell('reuse')}: the folder is of this machine; it does not go with {spell('cluster')}")
+    if asked.cluster is not None and not asked.cluster.strip():
+        raise UsageError(f"{spell('cluster')}: give the address of a scheduler (tcp://HOST:8786), or {LOCAL}")
+    return asked.cluster
+
+
 def _is_given(value: object) -> bool:
     return value is not None and value is not False
-
-
-def _spelled_field(field: str, spell: Spell) -> str:
-    """A field of the scenario as whoever asks has written it; anything else as it is."""
-    return next((spell(name) for name, of_scenario in _SCENARIO.items() if of_scenario == field), field)
-
-
-def _profiles(given: Sequence[str | Profile], spell: Spell) -> tuple[Profile, ...]:
-    if not any(given):
-        known = ", ".join(known_profiles())
-        raise UsageError(f"{spell('profiles')} is missing; known profiles: {known} ({spell('help')} has an example)")
-    profiles = [name if isinstance(name, Profile) else load_profile(name, INSTALLED_KINDS) for name in _wanted(given)]
-    for profile in profiles:
-        if [other.id for other in profiles].count(profile.id) > 1:
-            said = f"two profiles have the id {profile.id!r}; a report could not tell them apart"
-            raise UsageError(f"{spell('profiles')}: {said}")
-    return tuple(profiles)
-
-
-def _named_by_file(given: Sequence[str | Profile], profiles: Sequence[Profile]) -> dict[str, str]:
-    named = zip(_wanted(given), profiles, strict=True)
-    return {profile.id: name for name, profile in named if isinstance(name, str) and is_path(name)}
-
-
-def _wanted(given: Sequence[str | Profile]) -> list[str | Profile]:
-    """Each that is asked for once, in their order; a loaded one is only itself, for it may hold what has no hash."""
-    wanted = [name for item in given for name in (known_profiles() if item == ALL else (item,))]
-    return list({item if isinstance(item, str) else id(item): item for item in wanted}.values())
-
-
-def _parameters(asked: Asked, spell: Spell) -> tuple[Parameters, dict[str, float | int | bool | str]]:
-    """Parameters of plant and simulation with the bundled controller's, and those of the user's own."""
-    try:
-        own, others = own_parameters(asked.settings) if asked.controller is not None else ({}, tuple(asked.settings))
-        if asked.fidelity is not None:
-            others = (*others, f"simulation.fidelity={asked.fidelity}")
-        return parameters_from(others), own
-    except UsageError as error:
-        text = str(error)
-        if asked.fidelity is not None:
-            text = text.replace("--set simulation.fidelity:", f"{spell('fidelity')}:")
-        raise UsageError(_SET.sub(lambda set: f"{spelled_of(spell, 'settings', set[1])} {set[1]}", text)) from None
-
-
-def _tests(profiles: tuple[Profile, ...], asked: Asked, spell: Spell) -> tuple[Assignment, ...]:
-    overrides: dict[str, Any] = _given(asked, _OVERRIDES)
-    if asked.events is not None:
-        overrides["events"] = load_events(asked.events) if isinstance(asked.events, str) else tuple(asked.events)
-    if asked.sag is not None:
-        fields = overrides | _given(asked, ("point_on_wave", "irradiance"))
-        return sag_tests(profiles, asked, asked.sag, fields, spell)
-    return tuple(Assignment(profile, test) for profile in profiles for test in profile.tests(**overrides))
-
-
-def _given(asked: Asked, names: Sequence[str]) -> dict[str, float | str]:
-    """Fields of the scenario that are given."""
-    fields = {_SCENARIO[name]: in_units_of(_SCENARIO[name], getattr(asked, name)) for name in names}
-    for name, value in fields.items():
-        if isinstance(value, float) and not math.isfinite(value):
-            raise UsageError(f"{name}: {value} is not a number that can be used")
-    return {name: value for name, value in fields.items() if value is not None}

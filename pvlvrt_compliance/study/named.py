@@ -7,7 +7,6 @@ instead, and what comes back is only what the function returns.
 from collections.abc import Callable, Mapping
 from functools import partial
 from importlib import import_module
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from pvlvrt_compliance.errors import UsageError
@@ -30,7 +29,7 @@ class Named(NamedTuple):
     """
 
     name: str
-    options: Mapping[str, Any] = MappingProxyType({})
+    options: Mapping[str, Any] = {}
 
     def found(self) -> Making:
         """The function, with its options.

@@ -13,8 +13,8 @@ from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.study.baseline.applying import with_baseline
 from pvlvrt_compliance.study.job import Job
 from pvlvrt_compliance.study.opening import open_controller
+from pvlvrt_compliance.study.ordering import rows_of, shared_together
 from pvlvrt_compliance.study.selection import Assignment
-from pvlvrt_compliance.study.sharing import rows_of, shared_together
 from pvlvrt_compliance.waveforms import Waveforms
 
 if TYPE_CHECKING:
@@ -85,11 +85,11 @@ class OneByOne:
 
     def _opened(self) -> "Simulator":
         from pvlvrt_compliance.controllers.process.scratch import clear_abandoned
-        from pvlvrt_compliance.simulation.simulate import simulate
+        from pvlvrt_compliance.study.reuse.opening import simulator_for
 
         clear_abandoned()
         self._controller = open_controller(self._job)
-        return _LastRecord(self._controller or simulate)
+        return _LastRecord(simulator_for(self._job, self._controller))
 
 
 class _LastRecord:

@@ -42,12 +42,14 @@ def provenance(
     controller: Mapping[str, Any] | None = None,
     files: Mapping[str, Any] | None = None,
     settings: Mapping[str, Any] | None = None,
+    reuse: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Everything that decides the figures of a run, as `results.json` carries it.
 
     ``command`` is the words of a command line, or a text as it is. ``controller`` says what a controller of the user's
     own is; without, it is the bundled one. ``files`` says where in a repository its file is, and those of profiles.
-    ``settings`` says what of all that was written down in a file or the environment.
+    ``settings`` says what of all that was written down in a file or the environment, ``reuse`` how many records are of
+    earlier runs.
     """
     return {
         "created": created.isoformat(),
@@ -56,9 +58,10 @@ def provenance(
         "profile_digest": ", ".join(profile.digest for profile in profiles),
         **(all_printable(controller) if controller else _bundled()),
         **({"files": all_printable(files)} if files else {}),
-        "versions": _versions(),
+        "versions": versions(),
         "parameters": parameters.model_dump(mode="json"),
         **({"settings": all_printable(settings)} if settings else {}),
+        **({"reuse": all_printable(reuse)} if reuse else {}),
     }
 
 
@@ -69,11 +72,12 @@ def provenance_of_record(profile: Profile, record: Mapping[str, Any], created: d
         "profile": profile.id,
         "profile_digest": profile.digest,
         **all_printable(record),
-        "versions": _versions(),
+        "versions": versions(),
     }
 
 
-def _versions() -> dict[str, str]:
+def versions() -> dict[str, str]:
+    """Versions of all that decides the figures of a run, and what they look like."""
     return {
         "pvlvrt-compliance": __version__,
         "python": platform.python_version(),

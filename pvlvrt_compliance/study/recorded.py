@@ -19,7 +19,7 @@ from pvlvrt_compliance.study.provenance import created_at, provenance_of_record
 from pvlvrt_compliance.study.timing import Stopwatch
 from pvlvrt_compliance.units import Nominal, nearest_nominal_frequency
 from pvlvrt_compliance.waveforms import Waveforms
-from pvlvrt_compliance.waveforms.recording import read_waveforms
+from pvlvrt_compliance.waveforms.recording import files_of, read_waveforms
 
 _NO_FILE = "record"
 
@@ -106,13 +106,5 @@ def _origin(record: str | Waveforms) -> dict[str, Any]:
             for samples in segment.channels.values():
                 digest.update(samples.tobytes())
         return {"record": _NO_FILE, "record_digest": digest.hexdigest()}
-    content = b"".join(file.read_bytes() for file in _files_of(Path(record)))
+    content = b"".join(file.read_bytes() for file in files_of(Path(record)))
     return {"record": record, "record_digest": hashlib.sha256(content).hexdigest()}
-
-
-def _files_of(record: Path) -> list[Path]:
-    """A file, and of COMTRADE the one with the samples."""
-    if record.suffix.lower() != ".cfg":
-        return [record]
-    samples = (record.with_suffix(suffix) for suffix in (".dat", ".DAT"))
-    return [record, *[file for file in samples if file.is_file()][:1]]

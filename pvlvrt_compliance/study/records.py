@@ -1,6 +1,6 @@
 """Waveform files of a run, written as its records come, so that no record need be kept."""
 
-from datetime import datetime
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 from pvlvrt_compliance.evidence.evidence import Evidence
@@ -9,7 +9,8 @@ from pvlvrt_compliance.results.files import WAVEFORMS
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.study.job import KEEP_ALL, KEEP_FAILED, Job
 from pvlvrt_compliance.study.selection import Assignment
-from pvlvrt_compliance.study.store import OutputFolder
+from pvlvrt_compliance.study.store import writing
+from pvlvrt_compliance.study.work import Keeping
 from pvlvrt_compliance.waveforms.comtrade import write_comtrade
 from pvlvrt_compliance.waveforms.csv import write_csv
 
@@ -19,27 +20,16 @@ class Records:
 
     Parameters
     ----------
-    output : OutputFolder
+    keeping : Keeping
         Where they are staged.
     job : Job
         Says which are kept.
-    created : datetime
-        Instant of t = 0.
-    csv : bool
-        Whether they are written as CSV, too.
     """
 
-    def __init__(self, output: OutputFolder, job: Job, created: datetime, *, csv: bool = False) -> None:
-        self._output = output
+    def __init__(self, keeping: Keeping, job: Job) -> None:
+        self._keeping = keeping
         self._job = job
-        self._created = created
-        self._csv = csv
         self._names: dict[Scenario, str] = {}
-
-    @property
-    def names(self) -> set[str]:
-        """Names of those that are written."""
-        return set(self._names.values())
 
     def keep(self, item: Assignment, result: TestResult, evidence: Evidence) -> TestResult:
         """Write the record of a test, where it is to be kept; the result then says where it is.
@@ -61,23 +51,26 @@ class Records:
         scenario = item.test.scenario
         if scenario not in self._names:
             name = result.key if len(self._job.profiles) > 1 else result.id
-            self._write(item, evidence, self._output.waveforms / name)
+            self._write(item, evidence, self._keeping.staging / WAVEFORMS / name)
             self._names[scenario] = name
         return self._names[scenario]
 
     def _write(self, item: Assignment, evidence: Evidence, stem: Path) -> None:
         waveforms = evidence.waveforms.with_settling
-        with self._output.writing(stem.with_name(f"{stem.name}.dat")):
+        with self._writing(stem.with_name(f"{stem.name}.dat")):
             write_comtrade(
                 waveforms,
                 stem,
                 station=item.profile.id,
                 device="pvlvrt-check",
                 frequency_hz=evidence.nominal.frequency_hz,
-                start=self._created,
+                start=self._keeping.created,
                 trigger_s=item.test.scenario.start_s,
             )
-        if self._csv:
+        if self._keeping.csv:
             table = stem.with_name(f"{stem.name}.csv")
-            with self._output.writing(table):
+            with self._writing(table):
                 write_csv(waveforms, table)
+
+    def _writing(self, path: Path) -> AbstractContextManager[None]:
+        return writing(path, self._keeping.staging, self._keeping.folder)

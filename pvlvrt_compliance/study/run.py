@@ -13,6 +13,8 @@ from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.simulate import available_power_w, simulate
 from pvlvrt_compliance.simulation.translate import nominal_of
+from pvlvrt_compliance.study.instruments import instruments_for
+from pvlvrt_compliance.study.memory import keep_freed_memory
 from pvlvrt_compliance.waveforms import Waveforms
 
 Simulator = Callable[[Scenario, Parameters], Waveforms]
@@ -31,11 +33,12 @@ def run_test(profile: Profile, test: TestCase, parameters: Parameters, simulator
 
     What goes wrong inside the simulation makes the verdicts `error`, with the reason; nothing is raised.
     """
+    keep_freed_memory()
     try:
         waveforms = simulator(test.scenario, parameters)
         available_w = available_power_w(test.scenario, parameters)
     except (PvlvrtError, ArithmeticError) as error:
         return Judged(errored(profile, test, str(error)), None)
     nominal = nominal_of(parameters, test.scenario)
-    evidence = evidence_of(profile, test, waveforms, nominal, available_w)
+    evidence = evidence_of(profile, test, waveforms, nominal, available_w, instruments=instruments_for(test))
     return Judged(judge_record(profile, test, evidence), waveforms, evidence)

@@ -1,40 +1,33 @@
 """A whole run: from a job to its results, and to its files where a folder is named."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, nullcontext, suppress
 from dataclasses import dataclass, field
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pvlvrt_compliance.checks.summary import summarise
-from pvlvrt_compliance.errors import OutputError
-from pvlvrt_compliance.profile.procedure import TestCase
-from pvlvrt_compliance.profile.profile import Profile
-from pvlvrt_compliance.results import (
-    UNSETTLED,
-    ProfileSummary,
-    ReportDetails,
-    Results,
-    TestResult,
-    conclude,
-    counts_for,
-)
+from pvlvrt_compliance.errors import OutputError, UnfinishedError, UsageError
+from pvlvrt_compliance.results import ReportDetails, Results
 from pvlvrt_compliance.results.files import RESULTS
-from pvlvrt_compliance.study.baseline.applying import held_against, with_baseline
-from pvlvrt_compliance.study.baseline.catalogue import Catalogue
+from pvlvrt_compliance.study.account import Account
+from pvlvrt_compliance.study.executors.choosing import choose_executor
+from pvlvrt_compliance.study.executors.executor import Executor
+from pvlvrt_compliance.study.executors.units import units_of
 from pvlvrt_compliance.study.job import Job, Spell
 from pvlvrt_compliance.study.named import Named
 from pvlvrt_compliance.study.opening import open_controller
-from pvlvrt_compliance.study.ordering import in_order
-from pvlvrt_compliance.study.provenance import created_at, provenance
-from pvlvrt_compliance.study.records import Records
+from pvlvrt_compliance.study.provenance import created_at
 from pvlvrt_compliance.study.repository import files_of
-from pvlvrt_compliance.study.selection import Assignment, kinds_judged
-from pvlvrt_compliance.study.session import Progress, Tested, session
+from pvlvrt_compliance.study.reuse.opening import reuse_notes
+from pvlvrt_compliance.study.reuse.telling import reuse_in_words
+from pvlvrt_compliance.study.session import Progress, session
 from pvlvrt_compliance.study.store import OutputFolder
+from pvlvrt_compliance.study.work import Keeping, Tested, Work
 
 if TYPE_CHECKING:
     from pvlvrt_compliance.controllers.simulator import ForeignSimulator
+    from pvlvrt_compliance.study.shards.merging import Whole
 
 Render = Callable[[Results, Mapping[str, Any]], str | bytes]
 """Writes results, with what was made of the records by the key of the test, as one file."""
@@ -84,6 +77,7 @@ def run_job(
     tell: Callable[[str], None] = lambda _: None,
     settings: Mapping[str, Any] | None = None,
     kept: Callable[[Results], None] = lambda _: None,
+    whole: "Whole | None" = None,
 ) -> Results:
     """Run a job.
 
@@ -105,6 +99,8 @@ def run_job(
         What was written down in a file or the environment, as the provenance keeps it.
     kept : callable, optional
         Is given what a run that ended early has kept, once it is in its place; it must not raise.
+    whole : Whole, optional
+        Parts in which the job has been run: what they have found is taken, and nothing is simulated.
 
     Raises
     ------
@@ -112,22 +108,29 @@ def run_job(
         When the controller or the output folder cannot be used.
     OutputError
         When something cannot be written; says what has become of the finished tests.
+    LostError
+        When what runs the tests is gone; says so, too.
     BaseException
         Whatever else ends the run early, Ctrl-C among it, with a note (`__notes__`) that says so, too: finished tests
         are kept apart from the files of the last whole run.
     """
-    controller = open_controller(job)
-    for note in job.notes:
+    controller: Any = whole.controller if whole else open_controller(job)
+    for note in (*job.notes, *reuse_notes(job, controller)):
         tell(note)
     told = _tell_new(controller, 0, tell)
     run = _Run(job, controller, command, output, allow_unjudged, settings, kept)
+    executor = whole.executor if whole else None
     try:
         run.tell_of_folder(tell)
         with watch or nullcontext() as progress:
-            run.simulate(progress)
+            run.simulate(progress, tell, executor)
         results = run.deliver(tell)
-    except OutputError as error:
-        raise OutputError(f"{error}; {run.keep_unfinished()}") from error
+    except UnfinishedError as error:
+        raise type(error)(f"{error}; {run.keep_unfinished()}") from error
+    except UsageError as error:
+        if run.has_finished:
+            error.add_note(run.keep_unfinished())
+        raise
     except OSError as error:
         named = f"{error.filename}: {error.strerror}" if error.filename else str(error)
         raise OutputError(f"{named}; {run.keep_unfinished()}") from error
@@ -162,36 +165,53 @@ class _Run:
         settings: Mapping[str, Any] | None,
         kept: Callable[[Results], None],
     ) -> None:
-        self._job = job
+        created = created_at()
         self._controller = controller
-        self._command = command
-        self._settings = settings
         self._kept = kept
         self._output = output
-        self._allow_unjudged = allow_unjudged
-        self._created = created_at()
-        self._files = files_of(job.controller, job.profile_files)
         self._finished: list[Tested] = []
         self._made: dict[str, Any] = {}
         self._folder = OutputFolder(output.folder, output.spell) if output else None
-        self._records = Records(self._folder, job, self._created, csv=output.csv) if output and self._folder else None
+        self._work = Work(
+            job=job,
+            each=output.drawing if output else None,
+            keeping=self._keeping(created, output.csv) if output else None,
+            allow_unjudged=allow_unjudged,
+        )
+        self._account = Account(
+            work=self._work,
+            controller=controller,
+            command=command,
+            settings=settings,
+            created=created,
+            details=output.details if output else None,
+            files=files_of(job.controller, job.profile_files),
+        )
+
+    def _keeping(self, created: datetime, csv: bool) -> Keeping:
+        assert self._folder is not None
+        return Keeping(staging=self._folder.staging, folder=self._folder.folder, created=created, csv=csv)
+
+    @property
+    def has_finished(self) -> bool:
+        """Whether any test is finished."""
+        return bool(self._finished)
 
     def tell_of_folder(self, tell: Callable[[str], None]) -> None:
         """Say what was found in the output folder."""
         for note in self._folder.notes if self._folder else ():
             tell(note)
 
-    def simulate(self, progress: Progress | None) -> None:
+    def simulate(
+        self, progress: Progress | None, tell: Callable[[str], None], executor: Executor | None = None
+    ) -> None:
         """Run every test; waveforms are written and drawn at once, so that they need not be kept."""
-        stream = session(
-            self._job,
-            each=self._output.drawing if self._output else None,
-            keep=self._records.keep if self._records else None,
-            progress=progress,
-            controller=self._controller,
-            ends=self._is_a_failure if self._job.fail_fast else None,
-        )
-        with closing(stream):
+        work, controller = self._work, self._controller
+        if executor is None:
+            executor, note = choose_executor(work, units_of(work.job.tests, work.job.first), controller, tell)
+            if note:
+                tell(note)
+        with closing(session(work, progress=progress, controller=controller, executor=executor)) as stream:
             for tested in stream:
                 if tested.made is not None:
                     self._made[tested.result.key] = tested.made
@@ -199,8 +219,11 @@ class _Run:
 
     def deliver(self, tell: Callable[[str], None]) -> Results:
         """The results; with an output folder, all reports are put in their places."""
-        results = self._results()
+        for line in reuse_in_words(self._work.job, self._finished):
+            tell(line)
+        results = self._account.results(self._finished)
         if self._output and self._folder:
+            self._folder.drop_all_but(self._kept_records())  # of what came to no result where it was run
             for name, render in self._output.formats.items():
                 if name in self._output.told:
                     tell(f"writing {name}")
@@ -210,7 +233,7 @@ class _Run:
 
     def keep_unfinished(self) -> str:
         """Keep the finished tests apart from the reports of the last whole run; what has become of them, in words."""
-        count = f"{len(self._finished)} of {len(self._job.tests)} tests were finished"
+        count = f"{len(self._finished)} of {len(self._work.job.tests)} tests were finished"
         if self._folder is None:
             return count
         said = "nothing was written"
@@ -226,6 +249,10 @@ class _Run:
         self._folder.discard()
         return f"{count}, {said}"
 
+    def _kept_records(self) -> set[str]:
+        """Names of the records that the finished tests refer to."""
+        return {Path(tested.result.waveforms).stem for tested in self._finished if tested.result.waveforms}
+
     def discard(self) -> None:
         """Leave no trace of what is not in its place."""
         if self._folder:
@@ -234,9 +261,8 @@ class _Run:
     def _keep_interrupted(self, folder: OutputFolder) -> Path:
         """Keep records and results, and what a CI job that came to its time limit is looked at by."""
         assert self._output is not None
-        assert self._records is not None
-        folder.drop_all_but(self._records.names)
-        results = self._results(interrupted=True)
+        folder.drop_all_but(self._kept_records())
+        results = self._account.results(self._finished, interrupted=True)
         folder.write(RESULTS, self._output.formats[RESULTS](results, self._made))
         for name in self._output.formats.keys() - {RESULTS, *self._output.of_whole_runs}:
             with suppress(Exception):  # what ended the run may be in the way here, too; the tests are kept without it
@@ -244,54 +270,3 @@ class _Run:
         place = folder.keep_interrupted()
         self._kept(results)
         return place
-
-    def _is_a_failure(self, result: TestResult) -> bool:
-        """Whether a test keeps the run from ending with status 0."""
-        if self._job.baseline is not None:
-            result = with_baseline(result, self._job.baseline)
-        return counts_for(result, allow_unjudged=self._allow_unjudged) in UNSETTLED
-
-    def _summary(self, profile: Profile, run: Collection[str]) -> ProfileSummary:
-        """A profile as the reports show it; ``run`` are the keys of what is finished."""
-        job = self._job
-        return summarise(
-            profile,
-            _of(profile, (item for item in job.tests if item.key in run)),
-            left_out=_of(profile, job.left_out),
-            not_selected=_of(profile, job.not_selected),
-            not_run=_of(profile, (item for item in job.tests if item.key not in run)),
-            selected_checks=kinds_judged(profile, job.checks),
-        )
-
-    def _ended_at(self) -> str:
-        """Key of the test that has ended the run; nothing where all are run, or something else has ended it."""
-        if not self._job.fail_fast:
-            return ""
-        return next((tested.result.key for tested in self._finished if self._is_a_failure(tested.result)), "")
-
-    def _results(self, *, interrupted: bool = False) -> Results:
-        """What is finished, as one result object, in the order of the profiles."""
-        job = self._job
-        finished = in_order(self._finished, job)
-        own = self._controller.provenance(job.parameters) if self._controller else {}
-        origin = provenance(
-            job.profiles, job.parameters, self._command, self._created, own, self._files, self._settings
-        )
-        summaries = [self._summary(profile, {tested.result.key for tested in finished}) for profile in job.profiles]
-        details = self._output.details if self._output else None
-        results = conclude(
-            [tested.result for tested in finished],
-            summaries,
-            origin,
-            allow_unjudged=self._allow_unjudged,
-            report=details,
-            ended_at=self._ended_at(),
-            interrupted=interrupted,
-        )
-        if job.baseline is None:
-            return results
-        return held_against(results, job.baseline, Catalogue(job.profiles, [x.key for x in results.tests]).is_gone)
-
-
-def _of(profile: Profile, items: Iterable[Assignment]) -> list[TestCase]:
-    return [item.test for item in items if item.profile is profile]

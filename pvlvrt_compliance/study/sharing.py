@@ -1,7 +1,7 @@
 """Several profiles judge one run: each scenario is simulated once."""
 
 from collections import Counter, deque
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Self
 
@@ -10,36 +10,6 @@ from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.study.run import Simulator
 from pvlvrt_compliance.study.selection import Assignment
 from pvlvrt_compliance.waveforms import Waveforms
-
-
-def rows_of(assignments: Iterable[Assignment]) -> list[tuple[Assignment, ...]]:
-    """Runs of the same row together, in the order in which they come; a test outside any table is a row of its own."""
-    rows: dict[tuple[str, str], list[Assignment]] = {}
-    for assignment in assignments:
-        rows.setdefault((assignment.profile.id, assignment.test.row or assignment.test.id), []).append(assignment)
-    return [tuple(row) for row in rows.values()]
-
-
-def shared_together(rows: Sequence[tuple[Assignment, ...]]) -> list[tuple[Assignment, ...]]:
-    """The rows in an order in which those that begin with the same scenario follow one another.
-
-    The records that `SharedSimulator` keeps are then few.
-    """
-    first = [row[0].test.scenario for row in rows]
-    place: dict[Scenario, int] = {}
-    for index, scenario in enumerate(first):
-        place.setdefault(scenario, index)
-    return [rows[index] for index in sorted(range(len(rows)), key=lambda index: place[first[index]])]
-
-
-def in_turn(assignments: Iterable[Assignment], first: Collection[str] = ()) -> list[tuple[Assignment, ...]]:
-    """The rows in the order in which they are run: those with one of ``first`` before the others.
-
-    What begins with the same scenario goes with them, since its record is at hand then.
-    """
-    rows = shared_together(rows_of(assignments))
-    ahead = {row[0].test.scenario for row in rows if any(item.key in first for item in row)}
-    return sorted(rows, key=lambda row: row[0].test.scenario not in ahead)
 
 
 class SharedSimulator:
@@ -56,12 +26,22 @@ class SharedSimulator:
         All tests that will be run, in order.
     parameters : Parameters
         Of all runs.
+    is_ahead : bool
+        Whether a record is made before it is asked for.
     """
 
-    def __init__(self, simulator: Simulator, assignments: Iterable[Assignment], parameters: Parameters) -> None:
+    def __init__(
+        self,
+        simulator: Simulator,
+        assignments: Iterable[Assignment],
+        parameters: Parameters,
+        *,
+        is_ahead: bool = True,
+    ) -> None:
         scenarios = [assignment.test.scenario for assignment in assignments]
         self._simulator = simulator
         self._parameters = parameters
+        self._is_ahead = is_ahead
         self._wanted = Counter(scenarios)
         self._to_come = deque(dict.fromkeys(scenarios))
         self._kept: dict[Scenario, Waveforms] = {}
@@ -93,6 +73,6 @@ class SharedSimulator:
         """Begin with the first scenario to come that nobody has begun with."""
         if done in self._to_come:
             self._to_come.remove(done)
-        if self._to_come and not self._ahead:
+        if self._is_ahead and self._to_come and not self._ahead:
             following = self._to_come.popleft()
             self._ahead[following] = self._pool.submit(self._simulator, following, self._parameters)

@@ -10,6 +10,7 @@ import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from pvlvrt_compliance.errors import OutputError, UsageError, unwritable
 from pvlvrt_compliance.locks import Lock, holder_of, take_lock
@@ -20,6 +21,22 @@ _VERDICTS = (*ON_REQUEST, REPORT, JUNIT, RESULTS)  # results.json comes last and
 _STAGING, _LOCK = ".unfinished-", ".unfinished.lock"
 _EMPTY_LIST = b"[]"
 _RECORD_ENDINGS = (".cfg", ".dat", ".csv")
+
+
+@contextmanager
+def writing(path: Path, staging: Path, folder: Path) -> Iterator[None]:
+    """Say of a staged file that cannot be written where in the folder it was to go.
+
+    Raises
+    ------
+    OutputError
+        In place of an OSError.
+    """
+    try:
+        yield
+    except OSError as error:
+        place = folder / path.relative_to(staging)
+        raise OutputError(f"{place} cannot be written: {error.strerror or error}") from error
 
 
 class OutputFolder:
@@ -74,21 +91,6 @@ class OutputFolder:
         """Where waveforms are staged."""
         return self.staging / WAVEFORMS
 
-    @contextmanager
-    def writing(self, path: Path) -> Iterator[None]:
-        """Say of whatever cannot be written here where it was to go.
-
-        Raises
-        ------
-        OutputError
-            In place of an OSError.
-        """
-        try:
-            yield
-        except OSError as error:
-            place = self.folder / path.relative_to(self.staging)
-            raise OutputError(f"{place} cannot be written: {error.strerror or error}") from error
-
     def write(self, name: str, content: str | bytes) -> None:
         """Stage one file.
 
@@ -98,7 +100,7 @@ class OutputFolder:
             When it cannot be written.
         """
         data = content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content
-        with self.writing(self.staging / name):
+        with writing(self.staging / name, self.staging, self.folder):
             (self.staging / name).write_bytes(data)
 
     def write_if_possible(self, name: str, content: str | bytes) -> None:
@@ -232,10 +234,11 @@ class OutputFolder:
     def _files_of(self, part: str) -> tuple[str, ...]:
         """Files of the run in the folder, or in a folder in it, by their names in the folder; of nobody else."""
         root = self.folder / part
-        records = _records_of(root)
+        results = _results_in(root)  # of a large run they are many megabytes: read once
+        records = _records_of(results)
         prefix = f"{part}/" if part else ""
         verdicts = [name for name in self._names if (root / name).is_file() and (not part or records is not None)]
-        verdicts = [name for name in verdicts if name not in ON_REQUEST or _is_of_the_run(root / name)]
+        verdicts = [name for name in verdicts if name not in ON_REQUEST or _is_of_the_run(root / name, results)]
         found = (root / WAVEFORMS).iterdir() if records else ()
         waveforms = [f.name for f in found if f.stem in (records or ()) and f.suffix in _RECORD_ENDINGS and f.is_file()]
         return (*(f"{prefix}{name}" for name in verdicts), *(f"{prefix}{WAVEFORMS}/{name}" for name in waveforms))
@@ -252,19 +255,26 @@ def _device_of(place: Path) -> int:
     return place.stat().st_dev
 
 
-def _is_of_the_run(report: Path) -> bool:
+def _results_in(folder: Path) -> Any:
+    """The results in a folder as they were written; None of no or unreadable ones."""
+    try:
+        return json.loads((folder / RESULTS).read_bytes())
+    except (OSError, ValueError):
+        return None
+
+
+def _is_of_the_run(report: Path, results: Any) -> bool:
     """Whether a file that only some runs write is of the results beside it: it carries their id, as is, or nothing."""
     try:
-        run_id, content = json.loads((report.parent / RESULTS).read_bytes())["run_id"], report.read_bytes()
+        run_id, content = results["run_id"], report.read_bytes()
         return content.strip() == _EMPTY_LIST or (bool(run_id) and str(run_id).encode() in content)
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, KeyError, TypeError):
         return False
 
 
-def _records_of(folder: Path) -> set[str] | None:
-    """Names of the waveforms that the results in a folder refer to; None of no or unreadable results."""
+def _records_of(results: Any) -> set[str] | None:
+    """Names of the waveforms that results refer to; None of no or unreadable results."""
     try:
-        tests = json.loads((folder / RESULTS).read_bytes())["tests"]
-        return {Path(test["waveforms"]).stem for test in tests if test.get("waveforms")}
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return {Path(test["waveforms"]).stem for test in results["tests"] if test.get("waveforms")}
+    except (KeyError, TypeError, AttributeError):
         return None

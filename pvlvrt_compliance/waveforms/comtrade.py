@@ -16,6 +16,8 @@ _FLOAT32_MAX = "3.402823466E+38"
 _BITS_A_WORD = 16
 _LARGEST_STAMP = 2**32 - 2  # 2**32 - 1 says that the time stamp is missing
 _LONGEST_NAME = 64
+_ROWS_AT_HAND = 2048
+"""Rows that are filled channel by channel while a processor has all of them at hand: some 200 kB."""
 
 
 def write_comtrade(
@@ -141,13 +143,17 @@ def _write_samples(waveforms: Waveforms, path: Path, analog: list[str], status: 
     number = 1
     with path.open("wb") as file:
         for segment in waveforms:
-            rows = np.zeros(len(segment), dtype=row)
+            rows = np.empty(len(segment), dtype=row)
             rows["n"] = np.arange(number, number + len(segment))
             rows["t"] = np.rint((segment.t_s - waveforms.t0_s) * (1e6 / multiplier))
-            for column, name in enumerate(analog):
-                rows["analog"][:, column] = segment[name]
             rows["status"] = _status_words(segment, status, words)
-            file.write(rows.tobytes())
+            channels = [segment[name] for name in analog]
+            for first in range(0, len(segment), _ROWS_AT_HAND):
+                block = slice(first, first + _ROWS_AT_HAND)
+                values = rows["analog"][block]
+                for column, samples in enumerate(channels):
+                    values[:, column] = samples[block]
+            file.write(rows.view(np.uint8).data)
             number += len(segment)
 
 

@@ -42,6 +42,12 @@ def unit_of(channel: str) -> str:
     return UNITS_BY_SUFFIX[max(endings, key=len)] if endings else ""
 
 
+def phase_channels(kind: str) -> list[str]:
+    """Names of the channels of voltages ``u``, source voltages ``u0`` (V) or currents ``i`` (A) of the three phases."""
+    unit = "a" if kind == "i" else "v"
+    return [f"{kind}_{phase}_{unit}" for phase in "abc"]
+
+
 class ThreePhase(NamedTuple):
     """Samples of three phases, one array each."""
 
@@ -95,8 +101,7 @@ class Segment:
 
     def three_phase(self, kind: str) -> ThreePhase:
         """Voltages ``u``, source voltages ``u0`` (V) or currents ``i`` (A) of the three phases."""
-        unit = "a" if kind == "i" else "v"
-        return ThreePhase(*(self[f"{kind}_{phase}_{unit}"] for phase in "abc"))
+        return ThreePhase(*(self[name] for name in phase_channels(kind)))
 
     def slice(self, start_s: float, stop_s: float) -> "Segment":
         """Samples with ``start_s <= t < stop_s``."""

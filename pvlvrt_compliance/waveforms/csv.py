@@ -30,6 +30,13 @@ def write_csv(waveforms: Waveforms, path: Path) -> None:
 
 def _rows(segment: Segment, first: int, stop: int) -> str:
     t_s = segment.t0_s + segment.dt_s * np.arange(first, stop, dtype=np.float64)
-    columns = np.column_stack([t_s, *(x[first:stop] for x in segment.channels.values())])
-    row = "%.9f" + ",%.9g" * len(segment.channels) + "\n"
-    return row * (stop - first) % tuple(columns.ravel().tolist())
+    columns, row = [t_s], "%.9f"
+    for channel in segment.channels.values():
+        samples = np.ascontiguousarray(channel[first:stop], dtype=np.float64)
+        bits = samples.view(np.int64)  # zero has two signs, and no gap is another one
+        if (bits == bits[0]).all():
+            row += f",{samples[0]:.9g}"
+        else:
+            columns.append(samples)
+            row += ",%.9g"
+    return f"{row}\n" * (stop - first) % tuple(np.column_stack(columns).ravel().tolist())

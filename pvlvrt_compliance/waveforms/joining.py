@@ -5,7 +5,8 @@ coarsest step are there from the first segment to the last: what a simulated rec
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -18,6 +19,7 @@ from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
 INTERPOLATION_NODES = 8
 """Samples that an interpolated value is made from, half of them on either side."""
 
+_NODES = np.arange(1 - INTERPOLATION_NODES // 2, INTERPOLATION_NODES // 2 + 1)
 _ON_GRID = 1e-3  # of a step: samples this near are at one instant
 _SPARE = 3  # samples that a one-cycle series loses, at most, besides those of the cycle
 
@@ -45,7 +47,11 @@ def window_on_one_grid(waveforms: Waveforms, start_s: float, stop_s: float) -> S
 
 
 def one_cycle_series(
-    waveforms: Waveforms, series: Callable[[Segment], NDArray[Any]], frequency_hz: float, cycles: int = 1
+    waveforms: Waveforms,
+    series: Callable[[Segment], NDArray[Any]],
+    frequency_hz: float,
+    cycles: int = 1,
+    channels: Iterable[str] | None = None,
 ) -> list[NDArray[Any]]:
     """Series whose values are made of the cycle, or several, that end at each sample, one array a segment.
 
@@ -65,16 +71,23 @@ def one_cycle_series(
         Frequency of the fundamental (Hz).
     cycles : int
         How many cycles a value is made of.
+    channels : iterable of str, optional
+        What of the record the series is made of; all of it by default.
 
     Returns
     -------
     list of array, shape (..., n)
         NaN in the first cycle of the record, and of a segment whose grid does not fit the record before it.
     """
+    needed = waveforms.names if channels is None else [name for name in waveforms.names if name in set(channels)]
     found = []
     for index, segment in enumerate(waveforms):
         values = series(segment)
-        if index > 0 and len(segment) and (head := _with_lead_in(waveforms, index, frequency_hz, cycles)) is not None:
+        if (
+            index > 0
+            and len(segment)
+            and (head := _with_lead_in(waveforms, index, frequency_hz, cycles, needed)) is not None
+        ):
             lead, extended = head
             known = series(extended)[..., lead:]
             values[..., : known.shape[-1]] = known
@@ -82,7 +95,9 @@ def one_cycle_series(
     return found
 
 
-def _with_lead_in(waveforms: Waveforms, index: int, frequency_hz: float, cycles: int) -> tuple[int, Segment] | None:
+def _with_lead_in(
+    waveforms: Waveforms, index: int, frequency_hz: float, cycles: int, channels: Sequence[str]
+) -> tuple[int, Segment] | None:
     """First cycles of a segment behind as many before it, and how many samples the latter has; None if it has none."""
     segment = waveforms.segments[index]
     needed = math.ceil(cycles / (frequency_hz * segment.dt_s)) + _SPARE
@@ -90,13 +105,14 @@ def _with_lead_in(waveforms: Waveforms, index: int, frequency_hz: float, cycles:
     near = [s for s in waveforms.segments[: index + 1] if s.end_s >= start_s]
     margin_s = INTERPOLATION_NODES * max(s.dt_s for s in near)
     try:
-        before = _picked([s.slice(start_s - margin_s, segment.t0_s + margin_s) for s in near])
+        pieces = [Segment(s.t0_s, s.dt_s, {name: s[name] for name in channels}) for s in near]
+        before = _picked([piece.slice(start_s - margin_s, segment.t0_s + margin_s) for piece in pieces])
         lead = _resampled(before, segment, needed)
     except MeasurementError:
         return None
-    channels = {name: np.concatenate([x, segment[name][:needed]]) for name, x in lead.items()}
+    extended = {name: np.concatenate([x, segment[name][:needed]]) for name, x in lead.items()}
     samples = len(next(iter(lead.values())))
-    return samples, Segment(segment.t0_s - samples * segment.dt_s, segment.dt_s, channels)
+    return samples, Segment(segment.t0_s - samples * segment.dt_s, segment.dt_s, extended)
 
 
 def _resampled(before: Segment, segment: Segment, needed: int) -> dict[str, Samples]:
@@ -112,23 +128,29 @@ def _resampled(before: Segment, segment: Segment, needed: int) -> dict[str, Samp
     if samples > ratio * (len(before) - 1) + 1:
         raise MeasurementError(f"the record before {segment.t0_s:.3f} s has a gap")
     begin = max(samples - needed, 0)
-    return {name: _finer(x, ratio)[begin:samples] for name, x in before.channels.items()}
+    names, channels = list(before.channels), np.stack(list(before.channels.values()))
+    return dict(zip(names, _finer(channels, ratio)[:, begin:samples], strict=True))
 
 
 def _finer(x: Samples, ratio: int) -> Samples:
-    """Samples on a grid that is finer by a whole number, from the first to the last of the coarse one."""
+    """Channels on a grid that is finer by a whole number, from the first to the last sample of the coarse one.
+
+    Shape (channels, n) becomes (channels, ratio * (n - 1) + 1).
+    """
     if ratio == 1:
         return x
-    half = INTERPOLATION_NODES // 2
-    nodes = np.arange(1 - half, half + 1)
-    around = np.clip(np.arange(len(x) - 1)[:, np.newaxis] + nodes, 0, len(x) - 1)
-    return np.append(x[around] @ _lagrange_weights(nodes, np.arange(ratio) / ratio), x[-1])
+    last = x.shape[-1] - 1
+    around = np.clip(np.arange(last)[:, np.newaxis] + _NODES, 0, last)
+    between = (x[:, around] @ _lagrange_weights(ratio)).reshape(len(x), -1)
+    return np.concatenate([between, x[:, -1:]], axis=-1)
 
 
-def _lagrange_weights(nodes: NDArray[np.int64], at: Samples) -> Samples:
-    """Weights of the nodes for each place, shape (nodes, places)."""
-    others = [nodes[nodes != node, np.newaxis] for node in nodes]
-    return np.array([np.prod((at - o) / (node - o), axis=0) for node, o in zip(nodes, others, strict=True)])
+@lru_cache(maxsize=16)
+def _lagrange_weights(ratio: int) -> Samples:
+    """Weights of the nodes for each of so many places from one sample to the next, shape (nodes, places)."""
+    at = np.arange(ratio) / ratio
+    others = [_NODES[node != _NODES, np.newaxis] for node in _NODES]
+    return np.array([np.prod((at - o) / (node - o), axis=0) for node, o in zip(_NODES, others, strict=True)])
 
 
 class _Pick(NamedTuple):

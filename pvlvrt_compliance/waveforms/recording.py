@@ -56,6 +56,15 @@ def read_waveforms(path: Path, channels: Sequence[str] | None = None) -> Wavefor
     )
 
 
+def files_of(recording: Path) -> list[Path]:
+    """A file, and of COMTRADE the one with the samples: first that whose ending is written in the same case."""
+    if recording.suffix.lower() != ".cfg":
+        return [recording]
+    endings = (".dat", ".DAT") if recording.suffix.islower() else (".DAT", ".dat")
+    samples = (recording.with_suffix(ending) for ending in endings)
+    return [recording, *[file for file in samples if file.is_file()][:1]]
+
+
 def _bounds(t: Samples, path: Path) -> list[int]:
     """First sample of every stretch of even steps, then the number of samples."""
     if len(t) < 2:

@@ -37,3 +37,9 @@ def twin(twin_module: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> A
     if twin_module.compiler() is None:
         pytest.skip("gcc is missing, so the C twin cannot be built")
     return twin_module.Twin(tmp_path_factory.mktemp("twin"))
+
+
+@pytest.fixture(scope="session")
+def row() -> ModuleType:
+    """Module of the rows of the table."""
+    return _script("row")

@@ -2,6 +2,7 @@
 
 import io
 import json
+import math
 import os
 import subprocess
 import sys
@@ -76,6 +77,7 @@ def _command(*arguments: str | Path, **environment: str) -> Ended:
     out, err = io.StringIO(), io.StringIO()
     with (
         mock.patch.dict(os.environ, surroundings(environment), clear=True),
+        mock.patch("pvlvrt_compliance.study.executors.choosing.PAYS_FROM_S", math.inf),  # what is patched is here alone
         redirect_stdout(out),
         redirect_stderr(err),
     ):

@@ -209,13 +209,16 @@ def test_fixed_plant_step_that_does_not_fit_is_refused(command, in_c):
     assert "3.0303 us (33 steps) or 2.94118 us (34 steps)" in ended.err
 
 
-def test_mapping_needs_a_controller_with_ports(command, in_python, tmp_path):
-    """A mapping file is for a controller of one's own that has ports; a Python class has none to tie."""
+def test_a_mapping_ties_ports(command, in_python):
+    """It is for a controller of one's own that has ports; a Python class has none to tie, but files to list."""
     assert "it needs --controller" in command(*GATE, "--mapping", "x.toml").err
-    spec = f"{in_python / 'controller.py'}:Controller"
-    ended = command("controllers", "inspect", spec, "--mapping", tmp_path / "x.toml")
+    spec, mapping = f"{in_python / 'controller.py'}:Controller", in_python / "x.toml"
+    mapping.write_text("[inputs]\nVdc = 'v_dc_v'\n")
+    ended = command("controllers", "inspect", spec, "--mapping", mapping)
     assert ended.status == 2
-    assert "--mapping does not go with it" in ended.err
+    assert "--mapping does not go with it" in " ".join(ended.err.split())
+    mapping.write_text('files = ["controller.py"]\n')
+    assert command("controllers", "inspect", spec, "--mapping", mapping).status == 0
 
 
 @pytest.mark.parametrize("name", ["inspect", "new", "header"])

@@ -8,6 +8,7 @@ import pytest
 import typer
 
 from pvlvrt_compliance.cli.main import app
+from pvlvrt_compliance.cli.typed import read_what_is_given
 from pvlvrt_compliance.results.files import BASELINE, FOLDER
 
 
@@ -114,3 +115,23 @@ def test_no_compiler_is_loaded_without_a_simulation(arguments):
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert done.stderr.splitlines()[-1] == "[]"
+
+
+@pytest.mark.parametrize(
+    ("words", "read"),
+    [
+        ("--sag 90% --profile=x", ["profiles", "sag"]),
+        *((words, None) for words in ("-v", "-vq", "--help", "--sag 9% -h")),
+        ("baseline update", ["file"]),  # an argument may be any word
+        ("baseline update --no-margins mine.txt", ["file", "margins"]),
+    ],
+)
+def test_a_command_reads_what_is_given(words, read):
+    """Typer makes a validator for each parameter that it reads; help, and several options in a word, need all."""
+    command, words = typer.main.get_command(app), words.split()
+    while words[0] in getattr(command, "commands", {}):
+        command, words = command.commands[words[0]], words[1:] or [""]
+    everything = command.params
+    read_what_is_given(command, words)
+    assert [param.name for param in command.params] == (read or [param.name for param in everything])
+    assert command.add_help_option == (read is None)

@@ -9,11 +9,13 @@ from pathlib import Path
 
 import pytest
 
+from pvlvrt_compliance.controllers.process.family import FORKS, descendants
 from pvlvrt_compliance.report.formats import html
 from pvlvrt_compliance.study.store import OutputFolder
-from waiting import PATIENCE_S
+from waiting import PATIENCE_S, wait_until
 
 OLD = "<!doctype html><title>the report of the last whole run</title>"
+PROGRAM = (sys.executable, "-m", "pvlvrt_compliance.cli.main")
 MAIN = ("--profile", "iec61400-21", "--sag", "90%")
 
 
@@ -118,6 +120,29 @@ def test_interrupted_inside_the_compiled_loop(paused, folder, number, status, wo
     process.send_signal(number)
     assert ended(process) == (status, "", f"{word}; 0 of 1 tests were finished, nothing was written\n")
     assert [p.name for p in folder.iterdir()] == ["report.html"]
+
+
+@POSIX
+@pytest.mark.slow
+def test_interrupted_while_processes_run_tests(reports, folder):
+    """They are gone with the command, which keeps what any of them has finished."""
+    words = (*PROGRAM, "--profile", "iec61400-21", "--jobs", "2", "--output", folder)
+    process = subprocess.Popen(words, stderr=subprocess.PIPE, stdout=subprocess.PIPE)
+    # Two of the three may be written while their tests are still to be finished.
+    wait_until(lambda: len(list(folder.glob(".unfinished-*/waveforms/*.cfg"))) >= 3, "three records")
+    workers = descendants(process.pid)
+    process.send_signal(signal.SIGINT)
+    status, out, err = ended(process)
+    assert (status, out) == (130, "")
+    assert "of 27 tests were finished and are kept in" in err
+    assert len(workers) == (2 if FORKS else 0)
+    assert not [worker for worker in workers if Path(f"/proc/{worker.pid}").exists()]
+    kept = reports(folder / "interrupted")
+    names = [Path(test["waveforms"]).stem for test in kept.json["tests"]]
+    assert names
+    records = {f"waveforms/{name}.{e}" for name in names for e in ("cfg", "dat")}
+    assert kept.files == {"results.json", "junit.xml"} | records
+    assert not list(folder.glob(".unfinished*"))
 
 
 @POSIX

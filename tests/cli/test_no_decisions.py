@@ -19,7 +19,8 @@ SIMULATES = {"simulation", "controllers", "plant", "control", "hardware", "kerne
 # By file: what of these rooms it touches. Whatever is not here touches none, and starts light.
 TOUCHES = {
     "check.py": {"study.job"},
-    "running.py": {"output", "study.job", "study.running", "controllers.process"},
+    "running.py": {"output", "study.job", "study.running", "study.shards", "controllers.process"},
+    "merge.py": {"output", "study.shards"},  # parts of a run are read, and nothing is simulated
     "completion/values.py": {
         "study.job",
         "study.selection",

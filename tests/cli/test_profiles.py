@@ -1,6 +1,7 @@
 """`pvlvrt-check profiles`: list, show, plot, check, schema, new."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -11,8 +12,9 @@ import jsonschema
 import pytest
 
 from pvlvrt_compliance.data.marks import marks_in
-from pvlvrt_compliance.profile import known_profiles, load_profile
+from pvlvrt_compliance.profile import known_profiles, load_profile, loading
 from pvlvrt_compliance.profile.beginning import placeholders
+from pvlvrt_compliance.resources import resource_folder
 
 COMMANDS = ("list", "show", "plot", "check", "schema", "new")
 SHIPPED = [name for name, known in known_profiles().items() if known.origin == "shipped"]
@@ -349,3 +351,68 @@ def test_no_compiler_is_loaded(arguments):
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert done.stderr.splitlines()[-1] == "[]"
+
+
+@pytest.fixture
+def my_codes(monkeypatch, tmp_path):
+    """A folder of one's own with a code that includes another, and a folder of its own for what is kept."""
+    folder = tmp_path / "codes"
+    folder.mkdir()
+    text = (resource_folder("profiles") / "iec61400-21.toml").read_text("utf-8")
+    (folder / "base.toml").write_text(text.replace('id = "iec61400-21"', 'id = "base"'), "utf-8")
+    over = 'schema_version = 1\nid = "over"\ntitle = "Over"\ninclude = ["base"]\n'
+    (folder / "over.toml").write_text(over, "utf-8")
+    monkeypatch.setenv("PVLVRT_PROFILES", str(folder))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kept"))
+    return folder
+
+
+def listed(command):
+    """The entries of the list by their names."""
+    return {entry["name"]: entry for entry in json.loads(command("profiles", "list", "--json").out)}
+
+
+@pytest.mark.usefixtures("my_codes")
+def test_a_list_is_kept(command, monkeypatch):
+    """The second list is that of the first, and reads no profile as a whole."""
+    first = command("profiles", "list")
+    monkeypatch.setattr(loading, "load_profile", None)
+    assert command("profiles", "list") == first
+    assert listed(command)["over"]["tests"] == listed(command)["base"]["tests"] > 0
+
+
+def test_an_edit_of_what_a_profile_includes_is_listed(command, my_codes):
+    """Each file that an entry is made from counts, whichever profile it is of."""
+    before = listed(command)
+    (my_codes / "over.toml").write_text((my_codes / "over.toml").read_text() + 'drop_tests = ["VD1*"]\n')
+    base = my_codes / "base.toml"
+    base.write_text(base.read_text("utf-8").replace('title = "', 'title = "Another ', 1), "utf-8")
+    after = listed(command)
+    assert after["base"]["title"] == f"Another {before['base']['title']}"
+    assert 0 < after["over"]["tests"] < before["over"]["tests"]
+    assert after["over"]["digest"] != before["over"]["digest"]
+
+
+def test_a_file_that_comes_before_the_included_one_is_listed(command, my_codes, tmp_path, monkeypatch):
+    """What is included lies beside the file or in an earlier folder; once another does, the list is another."""
+    first = tmp_path / "first"
+    first.mkdir()
+    monkeypatch.setenv("PVLVRT_PROFILES", os.pathsep.join([str(first), str(my_codes)]))
+    base = (my_codes / "base.toml").rename(first / "base.toml").read_text("utf-8")
+    assert listed(command)["over"]["problems"] == []
+    (my_codes / "base.toml").write_text(base.replace("schema_version = 1", "schema_version = 9"), "utf-8")
+    after = listed(command)
+    assert after["over"]["problems"]
+    assert after["base"]["problems"] == []
+
+
+def test_a_list_with_a_file_from_elsewhere_is_not_kept(command, my_codes, tmp_path):
+    """A file that no folder of profiles has may change unseen, so such a list is made each time."""
+    outside = tmp_path / "outside.toml"
+    (my_codes / "base.toml").rename(outside)
+    over = my_codes / "over.toml"
+    over.write_text(over.read_text().replace('"base"', '"../outside.toml"'))
+    before = listed(command)["over"]
+    outside.write_text(outside.read_text("utf-8") + "unknown = 1\n", "utf-8")
+    assert before["problems"] == []
+    assert listed(command)["over"]["problems"]

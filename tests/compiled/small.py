@@ -21,7 +21,7 @@ FILES = {
 }
 """Text by file: ``entry(x)`` is 3 x + 1."""
 
-_PROGRAM = "import small; print(small.entry(2.0), sum(small.entry.stats.cache_hits.values()))"
+_PROGRAM = "import small; print(small.entry(2.0), small.entry.found_kept)"
 
 
 def written(folder: Path) -> Path:

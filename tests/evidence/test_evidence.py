@@ -11,6 +11,7 @@ from pvlvrt_compliance.evidence.stretches import after_each_step, between_steps_
 from pvlvrt_compliance.evidence.voltages import voltage_quantity_pu
 from pvlvrt_compliance.measure.summary import STANDARD_FLOORS
 from pvlvrt_compliance.profile.thresholds import STANDARD_THRESHOLDS
+from pvlvrt_compliance.waveforms.container import Waveforms
 
 
 def test_stretches_follow_the_steps_of_the_voltage():
@@ -96,3 +97,39 @@ def test_what_is_made_of_a_record_is_made_once():
         3,
     ]
     assert other.once("a", lambda: 4) == 4
+
+
+@pytest.mark.parametrize(("start_s", "end_s"), [(0.3, 0.5), (0.31234, 0.31234), (-1.0, 9.0), (5.0, 6.0), (0.5, 0.3)])
+def test_samples_are_those_that_a_mask_of_the_same_instants_has(start_s, end_s):
+    """Both ends included, though an instant is a rounding off the grid; or without the one at the end."""
+    evidence = evidence_of()
+    t_s, every = evidence.t_s, np.arange(len(evidence.t_s))
+    inside = (t_s >= start_s - 1e-9) & (t_s <= end_s + 1e-9)
+    assert every[evidence.samples(start_s, end_s)].tolist() == every[inside].tolist()
+    before = (t_s >= start_s - 1e-9) & (t_s < end_s)
+    assert every[evidence.samples_before(start_s, end_s)].tolist() == every[before].tolist()
+
+
+def test_what_is_made_for_an_object_is_not_for_one_that_equals_it():
+    """Not even once the first is gone and another may stand where it stood."""
+    evidence = evidence_of()
+    made = [evidence.once_for([0], "length", lambda k=k: k) for k in range(20)]
+    assert made == list(range(20))
+    item = [0]
+    assert [evidence.once_for(item, "length", lambda k=k: k) for k in (7, 8)] == [7, 7]
+
+
+def test_the_largest_current_is_that_of_the_phase_that_carries_most():
+    """Of the one-cycle amplitudes and of the instantaneous values; here of phase b."""
+    evidence = evidence_of()
+    (segment,) = evidence.waveforms.segments
+    unit_a = evidence.nominal.phase_current_peak_a / evidence.nominal.phase_voltage_peak_v
+    currents = {
+        f"i_{phase}_a": size * unit_a * segment[f"u_{phase}_v"]
+        for phase, size in zip("abc", (0.5, 0.8, 0.3), strict=True)
+    }
+    carrying = dataclasses.replace(segment, channels={**segment.channels, **currents})
+    evidence = dataclasses.replace(evidence, waveforms=Waveforms((carrying,)))
+    steady = evidence.samples(0.1, 0.2)
+    assert evidence.largest_current_pu[steady] == pytest.approx(evidence.current_phase_pu[1][steady])
+    assert evidence.largest_instantaneous_pu == pytest.approx(np.abs(evidence.current_pu).max(axis=0))

@@ -61,3 +61,18 @@ def test_nothing_that_swings():
     t, step = sampled(0.5)
     assert tone(t, np.full(len(t), 3.0), step) is None
     assert tone(t[:20], np.cos(t[:20]), step[:20]) is None
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_to_and_fro_is_the_smaller_of_the_largest_rise_and_fall(seed):
+    """Over all pairs of an earlier and a later sample."""
+    x = np.random.default_rng(seed).normal(size=60).cumsum()
+    rises = [later - earlier for k, earlier in enumerate(x) for later in x[k:]]
+    assert to_and_fro(x) == pytest.approx(min(max(rises), -min(rises)), abs=1e-12)
+
+
+def test_the_middle_of_a_swing_lies_between_its_extremes():
+    """A sinusoid on a straight line, whose middle is that line."""
+    t_s, step_s = sampled(1.0)
+    found = swing(t_s, 3 + 2 * t_s + np.sin(2 * np.pi * 5 * t_s), step_s)
+    assert found.ends == pytest.approx((3.0, 5.0), abs=0.5)

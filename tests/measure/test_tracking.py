@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 
 from draws import draws
 from pvlvrt_compliance.errors import MeasurementError
+from pvlvrt_compliance.measure import tracking
 from pvlvrt_compliance.measure.sequences import sequence_phasors
 from pvlvrt_compliance.measure.tracking import steering_frequency, tracked_frequency, tracked_sequences
 from pvlvrt_compliance.space_vectors import phases
@@ -257,3 +258,11 @@ def test_windows_go_by_a_frequency_above_the_floor_that_is_given(dt_s):
     faint = record(voltages(dt_s * np.arange(4000), 49, (2.0, 0, 0), {}), dt_s)
     assert steering_frequency(faint, "u", 50, floor=1.0)[0][-1] == pytest.approx(49, abs=1e-3)
     assert steering_frequency(faint, "u", 50, floor=3.0)[0][-1] == 50
+
+
+@pytest.mark.parametrize("width", [5, 80])
+def test_the_sliding_median_is_that_of_every_window(width: int) -> None:
+    """Each value is what numpy's median gives of its window, with numbers that occur twice and an odd or even count."""
+    x = np.round(np.random.default_rng(3).normal(50.0, 0.5, 400), 1)
+    expected = [np.median(x[k : k + width]) for k in range(len(x) - width + 1)]
+    assert tracking._sliding_median(x.tolist(), width) == expected

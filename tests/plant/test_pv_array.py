@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.special import lambertw
 
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.plant import pv_array
@@ -58,6 +59,14 @@ def test_slope_of_the_maximum_power_at_standard_conditions():
     assert (above - below) / 2 / maximum_power_point(1000.0, at(25.0)).p == pytest.approx(
         STP320_24_VE.gamma_pmp, rel=1e-4
     )
+
+
+@given(st.floats(-200, 200))
+def test_lambert_w_is_that_of_scipy(ln_x):
+    """W of any positive number is that of scipy.special.lambertw to 1e-15, and W(0) is 0."""
+    x = math.exp(ln_x)
+    assert pv_array.lambert_w(x) == pytest.approx(float(lambertw(x).real), rel=1e-15)
+    assert pv_array.lambert_w(0.0) == 0
 
 
 def test_no_irradiance_gives_no_current():

@@ -3,7 +3,7 @@
 import pytest
 
 from pvlvrt_compliance import pytest_plugin
-from pvlvrt_compliance.kernel import cache_root
+from pvlvrt_compliance.cache import cache_root
 
 _COMPILED = cache_root()
 

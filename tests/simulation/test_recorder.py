@@ -11,8 +11,8 @@ from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import busy_stretches
 from pvlvrt_compliance.simulation.columns import CHANNELS
 from pvlvrt_compliance.simulation.parameters import Parameters
-from pvlvrt_compliance.simulation.recorder import AFTER_S, BEFORE_S, LEAST_RATE_HZ, MOST_ROWS, plan_of
-from pvlvrt_compliance.simulation.simulate import available_power_w, simulate
+from pvlvrt_compliance.simulation.recorder import AFTER_S, BEFORE_S, LEAST_RATE_HZ, MOST_ROWS, RecordingPlan, plan_of
+from pvlvrt_compliance.simulation.simulate import available_power_w, record_of, simulate
 from pvlvrt_compliance.simulation.translate import nominal_of
 
 T_REG = 40.9568e-6
@@ -158,3 +158,13 @@ def test_verdicts_do_not_depend_on_the_recording(both, name, profile_name):
         a, b = (getattr(result.measurements, window).model_dump() for result in (thin, whole))
         for quantity in a:
             assert same(a[quantity], b[quantity], within * NOMINAL_OF_UNIT[quantity.split("_")[-1]]), (window, quantity)
+
+
+@pytest.mark.parametrize("rows", [1, 512, 1300])
+def test_rows_become_columns(rows):
+    """Each channel is a column of the rows, in one piece of memory."""
+    samples = np.arange(rows * len(CHANNELS), dtype=np.float64).reshape(rows, len(CHANNELS))
+    (segment,) = record_of(samples, RecordingPlan(np.array([0, rows]), np.array([1])), 1e-4).segments
+    for number, name in enumerate(CHANNELS):
+        assert segment[name].tolist() == samples[:, number].tolist()
+        assert segment[name].flags.c_contiguous

@@ -1,4 +1,4 @@
-"""The paper's three sags, judged for any controller."""
+"""The paper's three sags, judged for any controller; what is simulated."""
 
 from functools import partial
 
@@ -6,9 +6,9 @@ import pytest
 
 from pvlvrt_compliance.profile import load_profile
 from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.simulation import simulate as simulation
 from pvlvrt_compliance.simulation.loop import run as right_run
 from pvlvrt_compliance.simulation.parameters import parameters_from
-from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.study.run import run_test
 
 SAGS = {
@@ -16,6 +16,19 @@ SAGS = {
     "phase c 90 %": Sag(depth=0.9, phases="c"),
     "phase c 50 %": Sag(depth=0.5, phases="c"),
 }
+
+
+@pytest.fixture
+def runs(monkeypatch):
+    """Scenarios that were simulated, in order."""
+    seen, right = [], simulation.simulate
+
+    def simulate(scenario, parameters):
+        seen.append(scenario)
+        return right(scenario, parameters)
+
+    monkeypatch.setattr(simulation, "simulate", simulate)
+    return seen
 
 
 @pytest.fixture(scope="session")
@@ -30,7 +43,7 @@ def judge(profile):
 
     def judge(sag, run=right_run, assignments=(), **fields):
         test = profile.ad_hoc_test(SAGS[sag], **fields)
-        return run_test(profile, test, parameters_from(assignments), partial(simulate, run=run)).result
+        return run_test(profile, test, parameters_from(assignments), partial(simulation.simulate, run=run)).result
 
     return judge
 

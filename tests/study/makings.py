@@ -1,5 +1,10 @@
 """What tests have made of records, by name: ``Named("makings:length")``."""
 
+import os
+import signal
+import sys
+from pathlib import Path
+
 from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.results import TestResult
 
@@ -16,3 +21,20 @@ def seen(_evidence: Evidence, result: TestResult) -> int:
     """How many were seen before."""
     SEEN.append(result)
     return len(SEEN) - 1
+
+
+def killed(evidence: Evidence, result: TestResult, *, tests: dict[str, str]) -> int:
+    """Kill the process that makes it of some tests, of one with a file once, which is there then; else give its id."""
+    del evidence
+    if result.id in tests and not ((mark := tests[result.id]) and Path(mark).exists()):
+        if mark:
+            Path(mark).touch()
+        sys.stderr.write(f"{result.id} is too much\n")
+        sys.stderr.flush()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return os.getpid()
+
+
+def failing(evidence: Evidence, result: TestResult) -> None:
+    """Fail as a bug does."""
+    raise ZeroDivisionError(f"{result.id} of {evidence.waveforms.end_s:g} s")

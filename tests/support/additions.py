@@ -256,6 +256,7 @@ from pvlvrt_compliance.report.drawing.model import Drawing
 from pvlvrt_compliance.results import Results
 
 FILE = "summary.txt"
+SHOWS = "drawing"
 
 
 def render(results: Results, drawings: Mapping[str, Drawing]) -> str:

@@ -11,6 +11,7 @@ from pvlvrt_compliance.report.language import Texts
 from pvlvrt_compliance.study.job import Asked, make_job
 from pvlvrt_compliance.study.named import Named
 from pvlvrt_compliance.study.session import session
+from pvlvrt_compliance.study.work import Work
 from validation.places import DOCS
 
 PROFILE = "iec61400-21"
@@ -41,7 +42,8 @@ def pictures() -> dict[Path, str]:
 
 def _drawing(sag: str) -> Drawing:
     asked = Asked(profiles=(PROFILE,), sag=sag)
-    (tested,) = session(make_job(asked, lambda field: f"--{field}"), each=Named(OF_A_TEST, {}))
+    job = make_job(asked, lambda field: f"--{field}")
+    (tested,) = session(Work(job=job, each=Named(OF_A_TEST, {})))
     drawing: Drawing = tested.made
     return drawing
 

@@ -7,15 +7,15 @@ import numpy as np
 
 from pvlvrt_compliance.checks.connection.demand import Demand
 from pvlvrt_compliance.evidence.evidence import Evidence, require_finite
+from pvlvrt_compliance.evidence.no_load import has_source
 from pvlvrt_compliance.evidence.series import Mask
-from pvlvrt_compliance.evidence.stretches import after_each_step, settled_pu, settling_s
+from pvlvrt_compliance.evidence.stretches import settled_pu, settling_s
 from pvlvrt_compliance.evidence.voltages import NAMES, voltage_quantity_pu
 from pvlvrt_compliance.measure.durations import median_over_time
 from pvlvrt_compliance.profile.curves import Envelope, Side
 from pvlvrt_compliance.profile.requirements import RideThrough
 from pvlvrt_compliance.results import Band
 from pvlvrt_compliance.results.band import voltage_band
-from pvlvrt_compliance.space_vectors import fortescue
 from pvlvrt_compliance.waveforms.container import Samples
 
 _ROUNDING_PU = 1e-6
@@ -99,6 +99,11 @@ def deciding_envelope(requirement: RideThrough, evidence: Evidence) -> Envelope 
 
 
 def is_two_phase(evidence: Evidence) -> bool:
+    """Whether the sag is that of an isolated two-phase fault; see `_is_two_phase`."""
+    return evidence.once("two-phase fault", lambda: _is_two_phase(evidence))
+
+
+def _is_two_phase(evidence: Evidence) -> bool:
     """Whether the sag is that of an isolated two-phase fault, by the voltages without the inverter's current.
 
     Measured where the record has them, else those asked for. A two-phase fault leaves V+ + V- = 1 pu and V0 = 0; a
@@ -111,23 +116,21 @@ def is_two_phase(evidence: Evidence) -> bool:
 
 def _no_load_sequences_pu(evidence: Evidence) -> tuple[float, float, float]:
     grid = evidence.disturbance
-    phasors = evidence.no_load_phasors_pu
-    inside = evidence.between(grid.start_s + 1 / evidence.frequency_hz, grid.clear_s)
-    if phasors is None or not inside.any():
+    inside = evidence.samples(grid.start_s + 1 / evidence.frequency_hz, grid.clear_s)
+    if not has_source(evidence) or inside.start == inside.stop:
         asked = grid.no_load(grid.start_s)
         return asked.positive_pu, asked.negative_pu, asked.zero_pu
-    amplitudes = np.abs(np.stack(fortescue(*phasors[:, inside])))
-    require_finite(amplitudes, "u0", evidence.t_s[inside])
+    amplitudes = [evidence.sequence_pu("u0", index)[inside] for index in range(3)]
+    require_finite(np.stack(amplitudes), "u0", evidence.t_s[inside])
     positive, negative, zero = (median_over_time(x, evidence.step_s[inside]) for x in amplitudes)
     return positive, negative, zero
 
 
 def _limit(envelope: Envelope, side: Side, by: str, tolerance_pu: float, evidence: Evidence) -> Limit:
-    after_start = evidence.between(evidence.disturbance.start_s, evidence.waveforms.end_s)
+    after_start = evidence.samples(evidence.disturbance.start_s, evidence.waveforms.end_s)
     voltage_pu = voltage_quantity_pu(evidence, envelope.voltage_quantity, "no_load")
     require_finite(voltage_pu[after_start], NAMES[envelope.voltage_quantity], evidence.t_s[after_start])
     starts_s = _starts_s(envelope, side, tolerance_pu, voltage_pu, evidence)
-    unsettled = after_each_step(evidence, settling_s(evidence), evidence.disturbance.voltage_steps_s)
 
     def demand(since_s: float, stay_s: float) -> Demand:
         mark, uncertain_s = envelope.mark_at(stay_s), _uncertain_s(envelope, stay_s, evidence)
@@ -139,12 +142,14 @@ def _limit(envelope: Envelope, side: Side, by: str, tolerance_pu: float, evidenc
         return None if stay_s is None else demand(max((t for t in starts_s if t <= at_s), default=starts_s[0]), stay_s)
 
     for begin_s, end_s in zip(starts_s, (*starts_s[1:], evidence.waveforms.end_s), strict=True):
-        here = evidence.between(begin_s, end_s)
+        here = _up_to_the_worst(envelope, side, voltage_pu, tolerance_pu, evidence.samples(begin_s, end_s))
         t_s = evidence.t_s[here] - begin_s
         beyond_pu = (envelope.voltage_at(t_s) - voltage_pu[here]) * (1 if side is Side.LOW else -1)
-        on_it_pu = np.where(_holds(envelope, t_s), tolerance_pu, min(tolerance_pu, _ROUNDING_PU))
-        deep = (beyond_pu > tolerance_pu) & ~unsettled[here]
-        left_s = _first_excursion_s(t_s, beyond_pu, deep, on_it_pu)
+        deep = beyond_pu > tolerance_pu
+        for step_s in evidence.disturbance.voltage_steps_s:
+            unsettled = evidence.samples(step_s, step_s + settling_s(evidence))
+            deep[max(unsettled.start - here.start, 0) : max(unsettled.stop - here.start, 0)] = False
+        left_s = _first_excursion_s(t_s, beyond_pu, deep, envelope, tolerance_pu)
         if left_s is not None:
             left_s = _at_its_step(left_s, begin_s, envelope, side, voltage_pu, tolerance_pu, evidence)
             return Limit(demand(begin_s, left_s), demand_at)
@@ -203,15 +208,28 @@ def _holds(envelope: Envelope, t_s: Samples) -> Mask:
     return holds
 
 
-def _first_excursion_s(t_s: Samples, beyond_pu: Samples, deep: Mask, on_it_pu: Samples) -> float | None:
+def _up_to_the_worst(envelope: Envelope, side: Side, voltage_pu: Samples, tolerance_pu: float, here: slice) -> slice:
+    """Samples up to the last that may lie beyond an envelope, as one beyond its outermost level may."""
+    levels, room_pu = [level for _, level in envelope.points], tolerance_pu - _ROUNDING_PU
+    seen = voltage_pu[here]
+    may_be = seen < max(levels) - room_pu if side is Side.LOW else seen > min(levels) + room_pu
+    if not may_be.any():
+        return slice(here.start, here.start)
+    return slice(here.start, here.stop - int(may_be[::-1].argmax()))
+
+
+def _first_excursion_s(
+    t_s: Samples, beyond_pu: Samples, deep: Mask, envelope: Envelope, tolerance_pu: float
+) -> float | None:
     """When the voltage first leaves the envelope (s, as ``t_s``), None when it never does.
 
     An excursion counts when it goes deeper than the tolerance (``deep``), so that a sag that is cleared exactly on the
     envelope is within it, and not while a one-cycle voltage swings to where a step leads. It then counts from its
-    beginning: where a line is crossed, or where a level that holds is left by more than the tolerance (``on_it_pu``).
+    beginning: where a line is crossed, or where a level that holds is left by more than the tolerance.
     """
     if not deep.any():
         return None
     first = int(deep.argmax())
-    on_or_within = np.flatnonzero(beyond_pu[:first] <= on_it_pu[:first])
+    on_it_pu = np.where(_holds(envelope, t_s[:first]), tolerance_pu, min(tolerance_pu, _ROUNDING_PU))
+    on_or_within = np.flatnonzero(beyond_pu[:first] <= on_it_pu)
     return float(t_s[on_or_within[-1] + 1 if len(on_or_within) else 0])

@@ -13,12 +13,15 @@ from pvlvrt_compliance.data.marks import marks_in
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
 from pvlvrt_compliance.evidence.frequency import ends_at_another_frequency
 from pvlvrt_compliance.evidence.stretches import between_steps_s, settling_s
+from pvlvrt_compliance.measure.extremes import first_most, largest
 from pvlvrt_compliance.measure.fourier import ComplexSamples
 from pvlvrt_compliance.profile.requirements import PhaseJumpRideThrough
 from pvlvrt_compliance.results import Band, Status, Verdict
 from pvlvrt_compliance.space_vectors import fortescue
 
 KIND = "phase_jump_ride_through"
+
+_TURN_DEG = 360.0
 
 
 class SeenJump(NamedTuple):
@@ -67,7 +70,7 @@ class PhaseJumpRideThroughCheck(Check):
                 )
         if (stop := stop_of(evidence)) is not None:
             return _judge_trip(requirement, evidence, jumps, stop)
-        largest = max(jumps, key=lambda jump: abs(jump.positive_deg))
+        furthest = first_most(jumps, lambda jump: abs(jump.positive_deg), _TURN_DEG)
         verdict = judge_recovery(
             KIND,
             requirement,
@@ -76,7 +79,7 @@ class PhaseJumpRideThroughCheck(Check):
             fraction=requirement.recovery_fraction,
             time_s=requirement.recovery_time_s,
             rests_on=[number for _, number in marks_in(requirement)],
-            since=f"the last jump (largest: {largest.in_words}, {largest.seen})",
+            since=f"the last jump (largest: {furthest.in_words}, {furthest.seen})",
         )
         if verdict.status is Status.FAIL and ends_at_another_frequency(evidence):
             raise NotApplicable("connected through every jump; the frequency ends elsewhere, and the power with it")
@@ -122,8 +125,9 @@ def jump_at(evidence: Evidence, at_s: float) -> SeenJump:
 def _measured(at_s: float, last: ComplexSamples, then: ComplexSamples, accuracy_deg: float) -> SeenJump:
     ratios = then * np.conj(last)
     of_phases = np.degrees(np.angle(ratios))
+    most = of_phases[largest(np.abs(of_phases), _TURN_DEG).at]
     positive = np.degrees(np.angle(_positive(then) * np.conj(_positive(last))))
-    return SeenJump(at_s, float(positive), float(of_phases[np.abs(of_phases).argmax()]), "measured", accuracy_deg)
+    return SeenJump(at_s, float(positive), float(most), "measured", accuracy_deg)
 
 
 def _positive(phasors: ComplexSamples) -> complex:

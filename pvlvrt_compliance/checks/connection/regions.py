@@ -49,7 +49,11 @@ def visits(table: RegionTable, tolerance_pu: float, evidence: Evidence, place: P
     MeasurementError
         When a voltage is missing or not finite.
     """
-    return [visit for side in Side for visit in _visits_of(table, side, tolerance_pu, evidence, place)]
+    return evidence.once_for(
+        table,
+        ("visits", tolerance_pu, place),
+        lambda: [visit for side in Side for visit in _visits_of(table, side, tolerance_pu, evidence, place)],
+    )
 
 
 def region_limits(table: RegionTable, found: list[Visit], evidence: Evidence) -> list[Limit]:
@@ -62,7 +66,7 @@ def _visits_of(
 ) -> Iterator[Visit]:
     quantity = table.low_quantity if side is Side.LOW else table.high_quantity
     voltage_pu = voltage_quantity_pu(evidence, quantity, place)
-    after_start = evidence.between(evidence.disturbance.start_s, evidence.waveforms.end_s)
+    after_start = evidence.samples(evidence.disturbance.start_s, evidence.waveforms.end_s)
     require_finite(voltage_pu[after_start], NAMES[quantity], evidence.t_s[after_start])
     from_mild_to_worse = _by_distance(table, side)
     masks = [_beyond(region, side, voltage_pu, tolerance_pu) for region in from_mild_to_worse]
@@ -104,13 +108,13 @@ def _limit(table: RegionTable, visit: Visit, evidence: Evidence) -> Limit:
             return None
         return demand(begun_s, float(_stay_s(visit.region, np.array([settled]))[0]))
 
-    stay_s = _stay_s(visit.region, visit.voltage_pu)
-    spent_s = time_spent_s(list(visit.beyond), evidence.t_s, table.cumulative_window_s)
-    free = np.flatnonzero(inside_of(list(visit.beyond), evidence.t_s) & (spent_s >= stay_s))
+    here = np.flatnonzero(inside_of(list(visit.beyond), evidence.t_s)) if visit.beyond else np.empty(0, dtype=np.intp)
+    t_s, stay_s = evidence.t_s[here], _stay_s(visit.region, visit.voltage_pu[here])
+    free = np.flatnonzero(time_spent_s(list(visit.beyond), t_s, table.cumulative_window_s) >= stay_s)
     if not len(free):
         return Limit(None, demand_at)
     first = free[0]
-    return Limit(demand(float(evidence.t_s[first] - stay_s[first]), float(stay_s[first])), demand_at)
+    return Limit(demand(float(t_s[first] - stay_s[first]), float(stay_s[first])), demand_at)
 
 
 def region_bands(kind: str, requirement: RideThrough, evidence: Evidence) -> list[Band]:
@@ -128,9 +132,9 @@ def region_bands(kind: str, requirement: RideThrough, evidence: Evidence) -> lis
 
 
 def _visit_bands(kind: str, table: RegionTable, visit: Visit, evidence: Evidence) -> Iterator[Band]:
-    spent_s = time_spent_s(list(visit.beyond), evidence.t_s, table.cumulative_window_s)
     for begin_s, end_s in visit.beyond:
-        before_s = float(spent_s[min(int(np.searchsorted(evidence.t_s, begin_s)), len(spent_s) - 1)])
+        at_s = evidence.t_s[[min(int(np.searchsorted(evidence.t_s, begin_s)), len(evidence.t_s) - 1)]]
+        before_s = float(time_spent_s(list(visit.beyond), at_s, table.cumulative_window_s)[0])
         until_s = []
         for u_pu in visit.region.voltage_pu:
             ride_s = visit.region.ride_through_s(u_pu)

@@ -58,6 +58,10 @@ def limits_of(requirement: RideThrough, evidence: Evidence) -> Limits:
     MeasurementError
         When a voltage is missing or not finite.
     """
+    return evidence.once_for(requirement, "limits", lambda: _made(requirement, evidence))
+
+
+def _made(requirement: RideThrough, evidence: Evidence) -> Limits:
     limits, found = envelope_limits(requirement, evidence), []
     if requirement.regions is not None:
         tolerance_pu = requirement.envelope_tolerance_pu.value

@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from pvlvrt_compliance.checks.connection.feeding import flowing
 from pvlvrt_compliance.checks.connection.regions import Visit
 from pvlvrt_compliance.checks.recovery import settled_after_s
 from pvlvrt_compliance.checks.verdicts import judged_at_most
 from pvlvrt_compliance.evidence.evidence import Evidence
-from pvlvrt_compliance.evidence.excursions import inside_of
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.profile.regions import CEASE, RegionTable
 from pvlvrt_compliance.profile.requirements import RideThrough
@@ -85,7 +86,7 @@ def _measured(visit: Visit, stretch: Span, evidence: Evidence) -> tuple[float, f
 
 def _ceased_after_s(stretch: Span, evidence: Evidence) -> float:
     """Time from entering until no phase carries current for the rest of the stretch (s)."""
-    here = inside_of([stretch], evidence.t_s)
+    here = slice(*np.searchsorted(evidence.t_s, stretch).tolist())
     t_s = evidence.t_s[here]
     ceased_s = settled_after_s(t_s, flowing(here, evidence), stretch.start_s)
     return stretch.end_s - stretch.start_s if ceased_s is None else ceased_s

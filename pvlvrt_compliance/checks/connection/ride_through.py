@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from pvlvrt_compliance.checks.check import Check, decisive
+from pvlvrt_compliance.checks.check import Check, decisive, nearest
 from pvlvrt_compliance.checks.connection.demand import Demand, judged_stay
 from pvlvrt_compliance.checks.connection.envelopes import envelope_bands
 from pvlvrt_compliance.checks.connection.feeding import least_current, without_current
@@ -72,7 +72,8 @@ def _reported(verdicts: list[Verdict]) -> Verdict:
         worst = decisive(failed)
         also = "; also: ".join(verdict.message for verdict in failed if verdict is not worst)
         return worst.model_copy(update={"message": f"{worst.message}; also: {also}"}) if also else worst
-    return min(verdicts, key=lambda verdict: (verdict.unit != "s", verdict.margin or 0.0))
+    times = [verdict for verdict in verdicts if verdict.unit == "s"]
+    return nearest(times or verdicts, lambda verdict: verdict.margin or 0.0)
 
 
 def _connection(requirement: RideThrough, evidence: Evidence, limits: Limits) -> Verdict:

@@ -5,6 +5,7 @@ from pvlvrt_compliance.checks.connection.letting_go import Moved, Stop, grid_fre
 from pvlvrt_compliance.checks.connection.release import Limits
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable
+from pvlvrt_compliance.evidence.no_load import has_source
 from pvlvrt_compliance.evidence.stretches import between_steps_s
 from pvlvrt_compliance.profile.requirements import RideThrough
 from pvlvrt_compliance.results import Status, Verdict
@@ -41,7 +42,7 @@ def judged_trip(requirement: RideThrough, evidence: Evidence, limits: Limits, st
 
 
 def _released(requirement: RideThrough, evidence: Evidence, release: Demand, stop: Stop) -> Verdict:
-    if evidence.no_load_phasors_pu is None:
+    if not has_source(evidence):
         raise MeasurementError(
             f"{stop.in_words}: no-load voltage missing, and the inverter's own current may have changed the voltage at "
             "the terminals by which it might let go"
@@ -112,8 +113,8 @@ def _leave_to_others(evidence: Evidence, moved: Moved, stop: Stop) -> None:
 def _swing(evidence: Evidence, stop: Stop) -> str:
     """What V+ at the terminals did while the voltage of the source stood still, where it swung."""
     begin_s, _ = between_steps_s(evidence, stop.at_s)
-    here = evidence.between(begin_s + 1.1 / evidence.frequency_hz, stop.at_s)
-    if evidence.no_load_phasors_pu is None or not here.any():
+    here = evidence.samples(begin_s + 1.1 / evidence.frequency_hz, stop.at_s)
+    if not has_source(evidence) or here.start == here.stop:
         return ""
     seen, source = evidence.voltage_positive_pu[here], evidence.sequence_pu("u0", 0)[here]
     if seen.max() - seen.min() <= _A_SWING_PU + source.max() - source.min():

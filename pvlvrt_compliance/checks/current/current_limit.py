@@ -7,11 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from pvlvrt_compliance.checks.check import Check
-from pvlvrt_compliance.checks.parts import Part, by_margin, judged_by_parts
+from pvlvrt_compliance.checks.parts import Part, judged_by_parts
 from pvlvrt_compliance.data.marks import Marked
 from pvlvrt_compliance.disturbance.model import Moved
 from pvlvrt_compliance.evidence.evidence import Evidence, require_finite
 from pvlvrt_compliance.evidence.stretches import name_at, surely_over_s
+from pvlvrt_compliance.measure.extremes import largest
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.profile.requirements import CurrentLimit
 from pvlvrt_compliance.results import Band, Verdict
@@ -42,7 +43,7 @@ class CurrentLimitCheck(Check):
             closed.
         """
         parts = [_part(stage, evidence) for stage in _stages(requirement, evidence)]
-        verdict = judged_by_parts(KIND, requirement, parts, nearest=by_margin)
+        verdict = judged_by_parts(KIND, requirement, parts, one_unit=True)
         return verdict.model_copy(update={"stretch": name_at(evidence, verdict.at_s)})
 
     def limits(self, requirement: CurrentLimit, evidence: Evidence) -> tuple[Band, ...]:
@@ -77,7 +78,8 @@ def _stages(requirement: CurrentLimit, evidence: Evidence) -> Iterator[_Stage]:
     yield _Stage("peak", "instantaneous current", Span(evidence.waveforms.t0_s, end_s), peak.value, (peak,))
     for begin_s, until_s in pairwise((*_begins_s(evidence, end_s), end_s)):
         for stage in _fundamentals(requirement, begin_s, surely_over_s(evidence, until_s), 1 / evidence.frequency_hz):
-            if evidence.between(*stage.span).any():
+            seen = evidence.samples(*stage.span)
+            if seen.start < seen.stop:
                 yield stage
 
 
@@ -106,16 +108,15 @@ def _fundamentals(requirement: CurrentLimit, begin_s: float, until_s: float, cyc
 
 def _part(stage: _Stage, evidence: Evidence) -> Part:
     """The largest value of a stage, with its phase and its instant."""
-    inside = evidence.between(*stage.span)
+    inside = evidence.samples(*stage.span)
     t_s = evidence.t_s[inside]
-    values = require_finite(_series(stage, evidence)[:, inside], f"the {stage.what}", t_s)
-    phase, sample = np.unravel_index(values.argmax(), values.shape)
+    values = require_finite(_values(stage, evidence, inside), f"the {stage.what}", t_s)
+    most, at = largest(values.T, 1.0)
+    sample, phase = divmod(at, len(values))
     words = f"largest {stage.what}, in phase {'abc'[phase]} at {t_s[sample]:.3f} s"
     uncertainty = evidence.thresholds.uncertainty_current_pu.value
-    return Part(
-        words, float(values[phase, sample]), stage.limit_pu, "pu", float(t_s[sample]), stage.rests_on, uncertainty
-    )
+    return Part(words, most, stage.limit_pu, "pu", float(t_s[sample]), stage.rests_on, uncertainty)
 
 
-def _series(stage: _Stage, evidence: Evidence) -> Samples:
-    return np.abs(evidence.current_pu) if stage.name == "peak" else evidence.current_phase_pu
+def _values(stage: _Stage, evidence: Evidence, inside: slice) -> Samples:
+    return np.abs(evidence.current_pu[:, inside]) if stage.name == "peak" else evidence.current_phase_pu[:, inside]

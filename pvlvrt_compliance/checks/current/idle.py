@@ -6,6 +6,7 @@ from pvlvrt_compliance.checks.verdicts import judged
 from pvlvrt_compliance.data.marks import Marked
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require_finite, required
 from pvlvrt_compliance.evidence.no_load import no_load_mean_pu
+from pvlvrt_compliance.measure.extremes import smallest
 from pvlvrt_compliance.measure.quantities import WindowMeasurements
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.profile.requirements import Requirement
@@ -56,10 +57,11 @@ def destroyed_voltage(
 
 def _lowest_voltage(evidence: Evidence, window: WindowMeasurements) -> tuple[float, float]:
     """The least V+ in the window (pu), and when (s)."""
-    inside = evidence.between(window.start_s, window.end_s)
+    inside = evidence.samples(window.start_s, window.end_s)
     t_s = evidence.t_s[inside]
     v_positive = require_finite(evidence.voltage_positive_pu[inside], "V+", t_s)
-    return float(v_positive.min()), float(t_s[v_positive.argmin()])
+    lowest, at = smallest(v_positive, 1.0)
+    return lowest, float(t_s[at])
 
 
 def is_blocked(evidence: Evidence, window: WindowMeasurements) -> bool:
@@ -110,7 +112,8 @@ def blocked_where_due(
 
 def _largest_phase(evidence: Evidence, window: WindowMeasurements) -> tuple[float, float]:
     """The least that the largest phase carries in the window (pu), and when (s)."""
-    inside = evidence.between(window.start_s, window.end_s)
+    inside = evidence.samples(window.start_s, window.end_s)
     t_s = evidence.t_s[inside]
-    largest = require_finite(evidence.current_phase_pu[:, inside], "the current", t_s).max(axis=0)
-    return float(largest.min()), float(t_s[largest.argmin()])
+    largest = require_finite(evidence.largest_current_pu[inside], "the current", t_s)
+    least, at = smallest(largest, 1.0)
+    return least, float(t_s[at])

@@ -21,6 +21,8 @@ from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
 from pvlvrt_compliance.data.marks import Marked
 from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.evidence.evidence import ANY_LIGHT, Evidence, NotApplicable, require_finite, required
+from pvlvrt_compliance.measure.durations import mean_over_time
+from pvlvrt_compliance.measure.extremes import largest, smallest
 from pvlvrt_compliance.measure.quantities import WindowMeasurements
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.profile.requirements import ReactiveCurrent
@@ -122,8 +124,7 @@ def _judge(sequence: Sequence, requirement: ReactiveCurrent, evidence: Evidence,
     asked = _asked(sequence, requirement, evidence, window)
     event = _is_event(evidence, window)
     verdict = _judge_band(sequence, requirement, evidence, window, asked, event)
-    is_due = event and asked.clipped_pu != 0
-    if verdict.status is Status.PASS and is_due and is_blocked(evidence, window):
+    if verdict.status is Status.PASS and event and asked.clipped_pu != 0 and is_blocked(evidence, window):
         rests_on = (requirement.k, requirement.blocking_allowed_below_pu)
         return blocked_where_due(sequence.kind, requirement, evidence, window, rests_on)
     return verdict
@@ -152,7 +153,7 @@ def _judge_band(
         limit=band.high if at_high else band.low,
         margin=min(to_high, to_low),
         unit="pu",
-        at_s=t_s[additional.argmax() if at_high else additional.argmin()],
+        at_s=t_s[(largest if at_high else smallest)(additional, 1.0).at],
         rests_on=_rests_on(requirement, asked, is_more=at_high != asked.as_in_swell),
         bound="at_most" if at_high else "at_least",
         uncertainty=evidence.thresholds.uncertainty_current_pu.value,
@@ -217,10 +218,14 @@ def mean_additional(sequence: Sequence, evidence: Evidence, window: WindowMeasur
 
 
 def _mean_reactive(sequence: Sequence, evidence: Evidence, window: WindowMeasurements) -> float:
-    inside = evidence.between(window.start_s, window.end_s)
-    current = _reactive_series(sequence, evidence)[inside]
-    require_finite(current, "the reactive current", evidence.t_s[inside])
-    return float(np.average(current, weights=evidence.step_s[inside]))
+    return evidence.once((sequence, window.start_s, window.end_s), lambda: _mean_in(sequence, evidence, window))
+
+
+def _mean_in(sequence: Sequence, evidence: Evidence, window: WindowMeasurements) -> float:
+    inside = evidence.samples(window.start_s, window.end_s)
+    series = _reactive_series(sequence, evidence)[inside]
+    current = require_finite(series, "the reactive current", evidence.t_s[inside])
+    return mean_over_time(current, evidence.step_s[inside])
 
 
 def additional_current(sequence: Sequence, evidence: Evidence, span: Span) -> tuple[Samples, Samples]:
@@ -231,7 +236,7 @@ def additional_current(sequence: Sequence, evidence: Evidence, span: Span) -> tu
     MeasurementError
         When one of them cannot be measured.
     """
-    inside = evidence.between(*span)
+    inside = evidence.samples(*span)
     t_s = evidence.t_s[inside]
     current = require_finite(_reactive_series(sequence, evidence)[inside], "the reactive current", t_s)
     return t_s, current - reactive_before(sequence, evidence)

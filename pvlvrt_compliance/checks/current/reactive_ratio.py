@@ -14,6 +14,8 @@ from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require
 from pvlvrt_compliance.evidence.no_load import no_load_series_pu
 from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.evidence.stretches import surely_over_s
+from pvlvrt_compliance.measure.durations import mean_over_time
+from pvlvrt_compliance.measure.extremes import smallest
 from pvlvrt_compliance.profile.requirements import ReactiveRatio
 from pvlvrt_compliance.results import Band, Status, Verdict
 from pvlvrt_compliance.results.band import REACTIVE_SHARE
@@ -89,7 +91,7 @@ class _Seen(NamedTuple):
 
 def _seen(requirement: ReactiveRatio, evidence: Evidence, stretch: Stretch) -> _Seen:
     within_s = requirement.within_s.value
-    inside = evidence.between(stretch.begin_s + within_s, surely_over_s(evidence, stretch.end_s))
+    inside = evidence.samples(stretch.begin_s + within_s, surely_over_s(evidence, stretch.end_s))
     t_s = evidence.t_s[inside]
     if not len(t_s):
         length_s = stretch.end_s - stretch.begin_s
@@ -120,10 +122,10 @@ def _seen(requirement: ReactiveRatio, evidence: Evidence, stretch: Stretch) -> _
 def _least_pu(requirement: ReactiveRatio, evidence: Evidence, demanded: Samples) -> Samples:
     """Total current that is due: no more than flowed before, unless the share of nominal current is more."""
     before = evidence.before()
-    inside = evidence.between(before.start_s, before.end_s)
+    inside = evidence.samples(before.start_s, before.end_s)
     total = np.hypot(*(part[inside] for part in evidence.current_positive_pu))
     require_finite(total, "the current", evidence.t_s[inside])
-    usual = float(np.average(total, weights=evidence.step_s[inside]))
+    usual = mean_over_time(total, evidence.step_s[inside])
     return np.minimum(requirement.least_current_pu.value, np.maximum(demanded, usual))
 
 
@@ -133,8 +135,7 @@ def _voltage_destroyed(requirement: ReactiveRatio, evidence: Evidence, seen: _Se
     if not gone.any():
         return None
     at = seen.where(gone)
-    lowest = int(at.v_positive_pu.argmin())
-    v_positive = float(at.v_positive_pu[lowest])
+    v_positive, lowest = smallest(at.v_positive_pu, 1.0)
     return judged(
         KIND,
         requirement,
@@ -157,8 +158,9 @@ def _too_little_current(requirement: ReactiveRatio, evidence: Evidence, seen: _S
     if not missing.any():
         return None
     at = seen.where(missing)
-    worst = int((at.total_pu - at.least_pu).argmin())
-    total, least = float(at.total_pu[worst]), float(at.least_pu[worst])
+    above, worst = smallest(at.total_pu - at.least_pu, 1.0)
+    least = float(at.least_pu[worst])
+    total = least + above
     return judged(
         KIND,
         requirement,
@@ -177,18 +179,18 @@ def _too_little_current(requirement: ReactiveRatio, evidence: Evidence, seen: _S
 
 
 def _judge_share(requirement: ReactiveRatio, evidence: Evidence, seen: _Seen) -> Verdict:
-    share = seen.share
-    worst = int((share - seen.demanded).argmin())
+    above, worst = smallest(seen.share - seen.demanded, 1.0)
     demanded, tolerance = float(seen.demanded[worst]), requirement.tolerance.value
     limit = demanded - tolerance
-    margin = float(share[worst]) - limit
+    share = demanded + above
+    margin = share - limit
     return judged(
         KIND,
         requirement,
         pass_or_fail(margin >= 0),
-        f"smallest share of the reactive current against the demand is {share[worst]:.3f}, at {seen.t_s[worst]:.3f} s; "
+        f"smallest share of the reactive current against the demand is {share:.3f}, at {seen.t_s[worst]:.3f} s; "
         f"{demanded:.3f} is demanded at V+ = {seen.v_positive_pu[worst]:.3f} pu, with a tolerance of {tolerance:g}",
-        measured=share[worst],
+        measured=share,
         limit=limit,
         margin=margin,
         unit="",

@@ -11,6 +11,7 @@ from pvlvrt_compliance.checks.limits import level
 from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
 from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.evidence.evidence import ANY_LIGHT, Evidence, NotApplicable, require_finite, required
+from pvlvrt_compliance.measure.extremes import Extreme, largest, smallest
 from pvlvrt_compliance.measure.quantities import WindowMeasurements
 from pvlvrt_compliance.profile.requirements import ReactiveSupport
 from pvlvrt_compliance.results import Band, Verdict
@@ -110,7 +111,7 @@ def _judge_support(requirement: ReactiveSupport, evidence: Evidence, window: Win
         limit=limit,
         margin=margin,
         unit="kvar",
-        at_s=_worst_instant_s(evidence, window, np.argmin),
+        at_s=_worst_instant_s(evidence, window, smallest),
         rests_on=(requirement.curve, requirement.clip_to_capability, requirement.tolerance_pu),
         bound="at_least",
         tolerance=tolerance,
@@ -134,7 +135,7 @@ def _judge_no_support(requirement: ReactiveSupport, evidence: Evidence, window: 
         limit=limit,
         margin=margin,
         unit="kvar",
-        at_s=_worst_instant_s(evidence, window, lambda q: np.argmax(np.abs(q))),
+        at_s=_worst_instant_s(evidence, window, lambda q, scale: largest(np.abs(q), scale)),
         rests_on=(requirement.no_support_from_pu, requirement.tolerance_pu),
         bound="band",
         uncertainty=evidence.power_uncertainty_kva,
@@ -152,8 +153,11 @@ def _mean_over(window: WindowMeasurements) -> str:
     )
 
 
-def _worst_instant_s(evidence: Evidence, window: WindowMeasurements, worst: Callable[[Samples], np.intp]) -> float:
-    """Instant in the window at which the one-cycle mean of Q is farthest on the wrong side (s)."""
-    inside = evidence.between(window.start_s, window.end_s)
+def _worst_instant_s(
+    evidence: Evidence, window: WindowMeasurements, worst: Callable[[Samples, float], Extreme]
+) -> float:
+    """First instant in the window at which the one-cycle mean of Q is farthest on the wrong side (s)."""
+    inside = evidence.samples(window.start_s, window.end_s)
     t_s = evidence.t_s[inside]
-    return float(t_s[worst(require_finite(evidence.reactive_power_kvar[inside], "Q", t_s))])
+    q = require_finite(evidence.reactive_power_kvar[inside], "Q", t_s)
+    return float(t_s[worst(q, evidence.nominal.apparent_power_kva).at])

@@ -170,7 +170,7 @@ def _additional(evidence: Evidence, begin_s: float, end_s: float) -> tuple[Sampl
 
     Without voltage there is no reactive current.
     """
-    inside = evidence.between(begin_s, end_s)
+    inside = evidence.samples(begin_s, end_s)
     t_s = evidence.t_s[inside]
     current = require_finite(evidence.reactive_current_pu[inside], "the reactive current", t_s)
     return t_s, current - reactive_before(POSITIVE, evidence)
@@ -179,7 +179,7 @@ def _additional(evidence: Evidence, begin_s: float, end_s: float) -> tuple[Sampl
 def _event_start_s(evidence: Evidence, stretch: Stretch) -> float:
     if evidence.detection is None:
         return stretch.begin_s
-    inside = evidence.between(stretch.begin_s, stretch.end_s)
+    inside = evidence.samples(stretch.begin_s, stretch.end_s)
     t_s = evidence.t_s[inside]
     v_positive = require_finite(evidence.voltage_positive_pu[inside], "V+", t_s)
     events = detect_events(t_s, v_positive, v_positive, _thresholds(evidence.detection))

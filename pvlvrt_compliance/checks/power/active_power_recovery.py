@@ -136,7 +136,7 @@ def _residual_pu(level: Stretch, evidence: Evidence) -> float:
         if inside.voltage_positive_pu is None:
             raise MeasurementError("V+ could not be measured")
         return inside.voltage_positive_pu
-    part = evidence.between(level.begin_s, level.end_s)
+    part = evidence.samples(level.begin_s, level.end_s)
     return float(require_finite(evidence.voltage_positive_pu[part], "V+", evidence.t_s[part]).min())
 
 

@@ -13,7 +13,7 @@ from pvlvrt_compliance.checks.limits import along, of_each
 from pvlvrt_compliance.checks.verdicts import judged, pass_or_fail
 from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require_finite
-from pvlvrt_compliance.evidence.series import Mask
+from pvlvrt_compliance.measure.extremes import smallest
 from pvlvrt_compliance.profile.requirements import ActivePowerSupport, ReactiveSupport
 from pvlvrt_compliance.results import Band, Verdict
 from pvlvrt_compliance.results.band import ACTIVE_POWER
@@ -55,14 +55,16 @@ class ActivePowerSupportCheck(StretchCheck):
         MeasurementError
             When P, V+ or V- cannot be measured.
         """
-        seen = _cycles(evidence, _settled(requirement, evidence, stretch))
+        settled = _settled(requirement, evidence, stretch)
+        seen = _cycles(evidence, settled)
         support = _support(evidence)
         rated_kva = evidence.nominal.apparent_power_kva
-        room_kw = _room_kw(requirement, evidence, seen)
+        room_kw = _room_kw(requirement, evidence, settled)
         most_kw, words = min((evidence.power_before_kw, "fed before"), (_available_kw(evidence, stretch), "available"))
         due_kw = np.minimum(room_kw, most_kw)
-        worst = int((seen.power_kw - due_kw).argmin())
-        measured, limit = float(seen.power_kw[worst]), float(due_kw[worst])
+        above_kw, worst = smallest(seen.power_kw - due_kw, rated_kva)
+        limit = float(due_kw[worst])
+        measured = limit + above_kw
         tolerance = requirement.tolerance_fraction.value * rated_kva
         margin = measured - (limit - tolerance)
         if room_kw[worst] <= most_kw:
@@ -91,10 +93,10 @@ class ActivePowerSupportCheck(StretchCheck):
         tolerance = requirement.tolerance_fraction.value * evidence.nominal.apparent_power_kva
 
         def bands(stretch: Stretch) -> Iterator[Band]:
-            seen = _cycles(evidence, _settled(requirement, evidence, stretch))
+            settled = _settled(requirement, evidence, stretch)
             most_kw = min(evidence.power_before_kw, _available_kw(evidence, stretch))
-            due_kw = np.minimum(_room_kw(requirement, evidence, seen), most_kw)
-            draw = partial(along, KIND, ACTIVE_POWER, "limit of P", seen.t_s)
+            due_kw = np.minimum(_room_kw(requirement, evidence, settled), most_kw)
+            draw = partial(along, KIND, ACTIVE_POWER, "limit of P", evidence.t_s[settled])
             yield draw(lower=due_kw)
             yield draw(lower=due_kw - tolerance, widened=True)
 
@@ -108,9 +110,13 @@ def _support(evidence: Evidence) -> ReactiveSupport | None:
     return found
 
 
-def _room_kw(requirement: ActivePowerSupport, evidence: Evidence, seen: _Cycles) -> Samples:
-    rated_kva, around_pu = evidence.nominal.apparent_power_kva, requirement.voltage_pu.value
-    return rated_kva * room_pu(_support(evidence), seen.v_positive_pu, seen.v_negative_pu, around_pu)
+def _room_kw(requirement: ActivePowerSupport, evidence: Evidence, settled: slice) -> Samples:
+    def made() -> Samples:
+        seen, around_pu = _cycles(evidence, settled), requirement.voltage_pu.value
+        room = room_pu(_support(evidence), seen.v_positive_pu, seen.v_negative_pu, around_pu)
+        return evidence.nominal.apparent_power_kva * room
+
+    return evidence.once_for(requirement, (KIND, settled.start, settled.stop), made)
 
 
 def room_pu(
@@ -126,22 +132,22 @@ def room_pu(
     if support is None:
         return capability
     off = np.linspace(-around_pu, around_pu, _STEPS)
-    least = np.min(
-        [_by_eq_10_pu(support, v_positive_pu + x, v_negative_pu + around_pu - abs(x)) for x in off],
-        axis=0,
+    least = np.minimum.reduce(
+        [_square_by_eq_10(support, v_positive_pu + x, v_negative_pu + around_pu - abs(x)) for x in off]
     )
-    return np.where(v_positive_pu >= support.no_support_from_pu.value, capability, least)
+    return np.where(v_positive_pu >= support.no_support_from_pu.value, capability, np.sqrt(np.maximum(least, 0.0)))
 
 
-def _by_eq_10_pu(support: ReactiveSupport, v_positive_pu: Samples, v_negative_pu: Samples) -> Samples:
+def _square_by_eq_10(support: ReactiveSupport, v_positive_pu: Samples, v_negative_pu: Samples) -> Samples:
+    """Square of the active power (pu), below 0 where Q takes more than all of S_fault."""
     capability = np.maximum(v_positive_pu - v_negative_pu, 0.0)
     q = demanded_at_pu(support, v_positive_pu, v_negative_pu)
-    power: Samples = np.sqrt(np.maximum(capability**2 - q**2, 0.0))
-    return power
+    square: Samples = capability**2 - q**2
+    return square
 
 
-def _settled(requirement: ActivePowerSupport, evidence: Evidence, stretch: Stretch) -> Mask:
-    """Mask of the instants of a stretch that are looked at.
+def _settled(requirement: ActivePowerSupport, evidence: Evidence, stretch: Stretch) -> slice:
+    """The samples of a stretch that are looked at.
 
     Raises
     ------
@@ -153,8 +159,8 @@ def _settled(requirement: ActivePowerSupport, evidence: Evidence, stretch: Stret
     if stretch.ramps:
         raise NotApplicable(f"the {' and the '.join(stretch.ramps)} moves from {stretch.begin_s:.3f} s on")
     begin_s = stretch.begin_s + requirement.settling_s.value
-    settled = evidence.between(begin_s, stretch.end_s) & (evidence.t_s < stretch.end_s)
-    if not settled.any():
+    settled = evidence.samples_before(begin_s, stretch.end_s)
+    if settled.start == settled.stop:
         raise NotApplicable(
             f"the stretch from {stretch.begin_s:.3f} s to {stretch.end_s:.3f} s is over before the "
             f"{requirement.settling_s.value:g} s from which active power is due"
@@ -174,7 +180,7 @@ def _is_shallow_sag(evidence: Evidence, stretch: Stretch) -> bool:
     return moved_pu > rounding_pu and before.kind == "normal"
 
 
-def _cycles(evidence: Evidence, settled: Mask) -> _Cycles:
+def _cycles(evidence: Evidence, settled: slice) -> _Cycles:
     t_s = evidence.t_s[settled]
     series = (
         ("P", evidence.active_power_kw),

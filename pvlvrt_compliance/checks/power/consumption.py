@@ -12,6 +12,8 @@ from pvlvrt_compliance.data.marks import Number
 from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require_finite
+from pvlvrt_compliance.measure.durations import mean_over_time
+from pvlvrt_compliance.measure.extremes import largest, smallest
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.profile.requirements import Consumption
 from pvlvrt_compliance.profile.requirements.power import ConsumptionZones
@@ -84,9 +86,9 @@ def _zones(requirement: Consumption, evidence: Evidence, fault: Stretch) -> Cons
 
 def _negative_pu(evidence: Evidence, fault: Stretch) -> float:
     during = window_in(fault, evidence)
-    inside = evidence.between(*(during or (fault.begin_s, fault.end_s)))
+    inside = evidence.samples(*(during or (fault.begin_s, fault.end_s)))
     negative = require_finite(evidence.voltage_negative_pu[inside], "V-", evidence.t_s[inside])
-    return float(negative.max() if during is None else np.average(negative, weights=evidence.step_s[inside]))
+    return float(negative.max()) if during is None else mean_over_time(negative, evidence.step_s[inside])
 
 
 def _after(evidence: Evidence, fault: Stretch, transient_s: float) -> Span:
@@ -128,28 +130,27 @@ def _power(what: str, evidence: Evidence, zone: Span, which: str, limit: Number 
         mean = evidence.active_power_kw if which == "P" else evidence.reactive_power_kvar
         limit_kva = limit.value * evidence.nominal.apparent_power_kva
         part = Part(f"{what} taken", 0.0, limit_kva, _unit(which), 0.0, (limit,), evidence.power_uncertainty_kva)
-        yield from _largest(part, evidence, zone, -mean)
+        yield from _largest(part, evidence, zone, mean, evidence.nominal.apparent_power_kva)
 
 
 def _reactive_current(evidence: Evidence, zone: Span, limit: Number | None) -> Iterator[Part]:
     if limit is not None:
-        taken = -evidence.current_positive_pu.reactive
         uncertainty = evidence.thresholds.uncertainty_current_pu.value
         part = Part("zone C: reactive current taken", 0.0, limit.value, "pu", 0.0, (limit,), uncertainty)
-        yield from _largest(part, evidence, zone, taken)
+        yield from _largest(part, evidence, zone, evidence.current_positive_pu.reactive, 1.0)
 
 
-def _largest(limited: Part, evidence: Evidence, zone: Span, taken: Samples) -> Iterator[Part]:
-    """A part with the largest value that a series has in a zone."""
+def _largest(limited: Part, evidence: Evidence, zone: Span, fed: Samples, rated: float) -> Iterator[Part]:
+    """A part with the most that is taken in a zone, by a series of what is fed, and first when."""
     if zone.end_s <= zone.start_s:
         return
     _require_recorded(evidence, zone)
-    inside = evidence.between(zone.start_s + 1 / evidence.frequency_hz, zone.end_s)
+    inside = evidence.samples(zone.start_s + 1 / evidence.frequency_hz, zone.end_s)
     t_s = evidence.t_s[inside]
     if len(t_s):
-        values = require_finite(taken[inside], limited.what, t_s)
-        worst = int(values.argmax())
-        measured = max(float(values[worst]), 0.0)
+        values = require_finite(fed[inside], limited.what, t_s)
+        least, worst = smallest(values, rated)
+        measured = max(-least, 0.0)
         yield limited._replace(what=f"{limited.what} from the grid", measured=measured, at_s=float(t_s[worst]))
 
 
@@ -160,8 +161,9 @@ def _energy(what: str, evidence: Evidence, zone: Span, which: str, limit: Number
     _require_recorded(evidence, zone)
     ends_s, energies = _energies(evidence, zone, which)
     taken = np.maximum(-energies, 0.0)
-    limit_kws = limit.value * evidence.nominal.apparent_power_kva
-    at_s = float(ends_s[taken.argmax()])
+    rated_kva = evidence.nominal.apparent_power_kva
+    limit_kws = limit.value * rated_kva
+    at_s = float(ends_s[largest(taken, rated_kva / evidence.frequency_hz).at])
     uncertainty = evidence.power_uncertainty_kva * (zone.end_s - zone.start_s)
     yield Part(
         f"{what} taken from the grid", float(taken.sum()), limit_kws, f"{_unit(which)} s", at_s, (limit,), uncertainty

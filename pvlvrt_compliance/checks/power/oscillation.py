@@ -9,7 +9,7 @@ from pvlvrt_compliance.checks.verdicts import judged_at_most
 from pvlvrt_compliance.data.marks import Number
 from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require_finite
-from pvlvrt_compliance.evidence.series import Mask
+from pvlvrt_compliance.measure.extremes import first_most
 from pvlvrt_compliance.measure.swing import Swing, swing, tone
 from pvlvrt_compliance.profile.requirements import Oscillation
 from pvlvrt_compliance.results import Band, Verdict
@@ -59,8 +59,8 @@ class OscillationCheck(StretchCheck):
         """
         settled = _settled(requirement, evidence, stretch)
         t_s, step_s = evidence.t_s[settled], evidence.step_s[settled]
-        worst = max(_powers(evidence, settled), key=lambda power: power.swing.peak_to_peak)
         limit = requirement.limit_fraction.value * evidence.nominal.apparent_power_kva
+        worst = first_most(_powers(evidence, settled), lambda power: power.swing.peak_to_peak, limit)
         measured = worst.swing.peak_to_peak
         how = "" if measured <= limit else _in_words(t_s, worst.values, step_s)
         return judged_at_most(
@@ -86,15 +86,17 @@ class OscillationCheck(StretchCheck):
 
         def bands(stretch: Stretch) -> Iterator[Band]:
             settled = _settled(requirement, evidence, stretch)
-            for name, quantity, x in zip("PQ", (ACTIVE_POWER, REACTIVE_POWER), evidence.half_cycle_kva, strict=True):
-                what = f"swing of {name}"
-                yield about_the_line(KIND, quantity, what, evidence, settled, x, room, half_cycle=True)
+            t_s = evidence.t_s[settled]
+            span = (float(t_s[0]), float(t_s[-1]))
+            for power, quantity in zip(_powers(evidence, settled), (ACTIVE_POWER, REACTIVE_POWER), strict=True):
+                what = f"swing of {power.name}"
+                yield about_the_line(KIND, quantity, what, span, power.swing.ends, room, half_cycle=True)
 
         return of_each(self.stretches(requirement, evidence), bands)
 
 
-def _settled(requirement: Oscillation, evidence: Evidence, stretch: Stretch) -> Mask:
-    """Mask of the samples of a stretch that are looked at.
+def _settled(requirement: Oscillation, evidence: Evidence, stretch: Stretch) -> slice:
+    """The samples of a stretch that are looked at.
 
     Raises
     ------
@@ -109,7 +111,7 @@ def _settled(requirement: Oscillation, evidence: Evidence, stretch: Stretch) -> 
             f"the stretch from {stretch.begin_s:.3f} s to {end_s:.3f} s leaves less than "
             f"{requirement.least_cycles.value:g} cycles once it is settled"
         )
-    return evidence.between(begin_s, end_s) & (evidence.t_s < end_s)
+    return evidence.samples_before(begin_s, end_s)
 
 
 def _settling(requirement: Oscillation, evidence: Evidence, stretch: Stretch) -> Number:
@@ -118,11 +120,16 @@ def _settling(requirement: Oscillation, evidence: Evidence, stretch: Stretch) ->
     return requirement.array_settling_s if of_array else requirement.settling_s
 
 
-def _powers(evidence: Evidence, settled: Mask) -> list[_Power]:
+def _powers(evidence: Evidence, settled: slice) -> list[_Power]:
+    return evidence.once((KIND, settled.start, settled.stop), lambda: _measured(evidence, settled))
+
+
+def _measured(evidence: Evidence, settled: slice) -> list[_Power]:
     t_s, step_s = evidence.t_s[settled], evidence.step_s[settled]
     both = zip(("P", "Q"), ("kW", "kvar"), evidence.half_cycle_kva, strict=True)
     series = [(name, unit, require_finite(x[settled], name, t_s)) for name, unit, x in both]
-    return [_Power(name, unit, x, swing(t_s, x, step_s)) for name, unit, x in series]
+    rated_kva = evidence.nominal.apparent_power_kva
+    return [_Power(name, unit, x, swing(t_s, x, step_s, rated_kva)) for name, unit, x in series]
 
 
 def _in_words(t_s: Samples, values: Samples, step_s: Samples) -> str:

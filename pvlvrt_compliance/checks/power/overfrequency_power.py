@@ -9,6 +9,7 @@ from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, require
 from pvlvrt_compliance.evidence.excursions import excursions
 from pvlvrt_compliance.evidence.frequency import frequency_hz
 from pvlvrt_compliance.evidence.series import Mask
+from pvlvrt_compliance.measure.extremes import largest
 from pvlvrt_compliance.profile.requirements import OverfrequencyPower
 from pvlvrt_compliance.results import Characteristic, Drawn, Verdict
 from pvlvrt_compliance.results.band import ACTIVE_POWER, FREQUENCY
@@ -44,14 +45,15 @@ class OverfrequencyPowerCheck(Check):
         power_kw = require_finite(evidence.active_power_kw[active], "P", t_s)
         wanted_kw = demanded_kw(requirement, evidence, frequency[active])
         off_kw = np.abs(power_kw - wanted_kw)
-        worst = int(off_kw.argmax())
-        limit_kw = requirement.tolerance_fraction.value * evidence.nominal.apparent_power_kva
+        rated_kva = evidence.nominal.apparent_power_kva
+        furthest_kw, worst = largest(off_kw, rated_kva)
+        limit_kw = requirement.tolerance_fraction.value * rated_kva
         return judged_at_most(
             KIND,
             requirement,
-            f"P is {power_kw[worst]:.1f} kW at {frequency[active][worst]:.3f} Hz, {off_kw[worst]:.1f} kW from the "
+            f"P is {power_kw[worst]:.1f} kW at {frequency[active][worst]:.3f} Hz, {furthest_kw:.1f} kW from the "
             f"{wanted_kw[worst]:.1f} kW that the droop asks for; {limit_kw:.1f} kW is allowed",
-            measured=off_kw[worst],
+            measured=furthest_kw,
             limit=limit_kw,
             unit="kW",
             at_s=t_s[worst],
@@ -112,15 +114,19 @@ def demanded_kw(requirement: OverfrequencyPower, evidence: Evidence, frequency: 
 def _active(requirement: OverfrequencyPower, evidence: Evidence, frequency: Samples) -> Mask:
     threshold, activation_s = requirement.threshold_hz.value, requirement.activation_s.value
     tripped_s = evidence.known_opening_s
-    judged = evidence.t_s < (np.inf if tripped_s is None else tripped_s)
-    found = excursions((frequency > threshold) & judged, evidence.t_s)
+    above = frequency > threshold
+    if tripped_s is not None:
+        above[int(np.searchsorted(evidence.t_s, tripped_s)) :] = False
+    found = excursions(above, evidence.t_s)
     if not found:
         when = "" if tripped_s is None else f" before the trip at {tripped_s:.3f} s"
         raise NotApplicable(f"the frequency never exceeds {threshold:g} Hz{when}")
     active = np.zeros(len(evidence.t_s), dtype=np.bool_)
     for begin_s, end_s in found:
-        active |= (evidence.t_s > begin_s + activation_s) & (evidence.t_s < end_s)
-    active &= judged
+        first = int(np.searchsorted(evidence.t_s, begin_s + activation_s, "right"))
+        active[first : int(np.searchsorted(evidence.t_s, end_s))] = True
+    if tripped_s is not None:
+        active[int(np.searchsorted(evidence.t_s, tripped_s)) :] = False
     if not active.any():
         raise NotApplicable(
             f"the frequency exceeds {threshold:g} Hz for less than the {activation_s:g} s of activation"

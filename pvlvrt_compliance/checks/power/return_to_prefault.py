@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from pvlvrt_compliance.checks.check import Check
 from pvlvrt_compliance.checks.limits import around
-from pvlvrt_compliance.checks.parts import Part, by_margin, judged_by_parts
+from pvlvrt_compliance.checks.parts import Part, judged_by_parts
 from pvlvrt_compliance.data.marks import Number
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, required
 from pvlvrt_compliance.evidence.frequency import ends_at_another_frequency
@@ -37,7 +37,7 @@ class ReturnToPrefaultCheck(Check):
             When P or Q cannot be measured, or the record has no window after the disturbance.
         """
         _require_same_conditions(evidence)
-        return judged_by_parts(KIND, requirement, _parts(requirement, evidence), nearest=by_margin)
+        return judged_by_parts(KIND, requirement, _parts(requirement, evidence), one_unit=True)
 
     def limits(self, requirement: ReturnToPrefault, evidence: Evidence) -> tuple[Band, ...]:
         """P and Q of before, with the limits on either side, over the window `after`."""

@@ -6,6 +6,7 @@ from pvlvrt_compliance.checks.check import Check
 from pvlvrt_compliance.checks.quality.steady import steady_currents
 from pvlvrt_compliance.checks.verdicts import judged_at_most
 from pvlvrt_compliance.evidence.evidence import Evidence
+from pvlvrt_compliance.measure.extremes import largest
 from pvlvrt_compliance.measure.groups import dc_component
 from pvlvrt_compliance.profile.requirements import DcInjection
 from pvlvrt_compliance.results import Verdict
@@ -31,8 +32,8 @@ class DcInjectionCheck(Check):
         """
         window = steady_currents(evidence)[0]
         found = np.abs(dc_component(window.current, window.dt_s, window.frequency_hz))
-        phase = int(found.argmax())
-        measured, limit = 100 * float(found[phase]), requirement.limit_percent.value
+        most, phase = largest(found, 1.0)
+        measured, limit = 100 * most, requirement.limit_percent.value
         return judged_at_most(
             KIND,
             requirement,

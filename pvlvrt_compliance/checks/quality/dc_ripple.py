@@ -8,6 +8,7 @@ from pvlvrt_compliance.checks.verdicts import judged_at_most
 from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.evidence.evidence import Evidence, require_finite, required
 from pvlvrt_compliance.measure.quantities import WindowMeasurements
+from pvlvrt_compliance.measure.swing import swing
 from pvlvrt_compliance.profile.requirements import DcRipple
 from pvlvrt_compliance.results import Band, Verdict
 from pvlvrt_compliance.results.band import DC_VOLTAGE
@@ -40,7 +41,7 @@ class DcRippleCheck(StretchCheck):
             When v_DC cannot be measured in it.
         """
         window = evidence.window_of(stretch)
-        inside = evidence.between(window.start_s, window.end_s)
+        inside = evidence.samples(window.start_s, window.end_s)
         require_finite(evidence.dc_voltage_v[inside], "v_DC", evidence.t_s[inside])
         measured = required(window.dc_voltage_2f_percent, "the ripple of the DC voltage")
         limit = requirement.limit_percent.value
@@ -60,9 +61,11 @@ class DcRippleCheck(StretchCheck):
         """The largest ripple about the straight line of v_DC, in each window."""
 
         def bands(window: WindowMeasurements) -> Iterator[Band]:
-            inside = evidence.between(window.start_s, window.end_s)
+            inside = evidence.samples(window.start_s, window.end_s)
             mean = required(window.dc_voltage_mean_v, "v_DC")
             room = 2 * requirement.limit_percent.value / 100 * mean
-            yield about_the_line(KIND, DC_VOLTAGE, "ripple", evidence, inside, evidence.dc_voltage_v, room)
+            t_s = evidence.t_s[inside]
+            found = swing(t_s, evidence.dc_voltage_v[inside], evidence.step_s[inside])
+            yield about_the_line(KIND, DC_VOLTAGE, "ripple", (float(t_s[0]), float(t_s[-1])), found.ends, room)
 
         return of_each(evidence.windows_of(self.stretches(requirement, evidence)), bands)

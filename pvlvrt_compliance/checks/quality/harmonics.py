@@ -3,14 +3,13 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-import numpy as np
-
 from pvlvrt_compliance.checks.check import Check
 from pvlvrt_compliance.checks.parts import Part, judged_by_parts
 from pvlvrt_compliance.checks.quality.steady import SteadyWindow, steady_currents
 from pvlvrt_compliance.data.marks import Marked, Number
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.evidence.evidence import Evidence
+from pvlvrt_compliance.measure.extremes import largest
 from pvlvrt_compliance.measure.groups import harmonic_subgroups, spectrum, thd, trd
 from pvlvrt_compliance.profile.requirements import Harmonics
 from pvlvrt_compliance.profile.tables import HarmonicLimits
@@ -101,13 +100,13 @@ def _orders(limits: HarmonicLimits, subgroups: Samples) -> Iterator[_Component]:
     for order in range(2, subgroups.shape[-1]):
         row = limits.row_for(order)
         if row is not None:
-            at = int(subgroups[:, order].argmax())
-            phase, percent = "abc"[at], 100 * float(subgroups[at, order])
+            most, at = largest(subgroups[:, order], 1.0)
+            phase, percent = "abc"[at], 100 * most
             what = f"harmonic {order} of the current in phase {phase}, of the rated current"
             yield _Component(order, "", what, phase, percent, row.limit_percent, limits.mark_of(row))
 
 
 def _total(abbreviation: str, name: str, fractions: Samples, limit: Number) -> _Component:
-    at = int(np.argmax(fractions))
-    phase, percent = "abc"[at], 100 * float(fractions[at])
+    most, at = largest(fractions, 1.0)
+    phase, percent = "abc"[at], 100 * most
     return _Component(None, abbreviation, f"{name} in phase {phase}", phase, percent, limit.value, limit)

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from pvlvrt_compliance.cli.completion.asking import completer
-from pvlvrt_compliance.cli.options import files, output, run, sag, selection, setting
+from pvlvrt_compliance.cli.options import files, output, run, sag, selection, setting, speed
 from pvlvrt_compliance.cli.options.option import Option
 from pvlvrt_compliance.settings.setting import Setting
 
@@ -16,6 +16,7 @@ OPTIONS: dict[str, Option] = {
     **sag.OPTIONS,
     **setting.OPTIONS,
     **selection.OPTIONS,
+    **speed.OPTIONS,
     **output.OPTIONS,
     **files.OPTIONS,
 }
@@ -24,8 +25,11 @@ OPTIONS: dict[str, Option] = {
 _OF_THE_MOMENT = (*files.OPTIONS, "list_only", "list_json")
 """What nobody writes down: it is meant for one call."""
 
+_HOW = ("jobs", "cluster")
+"""What says how a run is made, not what it finds (`study.job.HOW`)."""
+
 SETTINGS: tuple[Setting, ...] = tuple(
-    Setting(field, option.names[0], option.kind, option.metavar)
+    Setting(field, option.names[0], option.kind, option.metavar, field in _HOW)
     for field, option in OPTIONS.items()
     if field not in _OF_THE_MOMENT
 )

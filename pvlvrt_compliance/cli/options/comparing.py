@@ -1,6 +1,6 @@
 """Options of `compare`: of the main command those that say what controllers are asked for, and some of its own."""
 
-from pvlvrt_compliance.cli.options import files, output, run, sag, selection, setting
+from pvlvrt_compliance.cli.options import files, output, run, sag, selection, setting, speed
 from pvlvrt_compliance.cli.options.option import Option, text
 
 _OF_THE_RUNS = {
@@ -8,6 +8,7 @@ _OF_THE_RUNS = {
     **sag.OPTIONS,
     **setting.OPTIONS,
     **{name: selection.OPTIONS[name] for name in ("tests", "skip", "checks", "include_long")},
+    **speed.OPTIONS,
     "waveforms": output.OPTIONS["waveforms"],
 }
 

@@ -2,7 +2,7 @@
 
 import typer
 
-from pvlvrt_compliance.cli.options.option import Option, flag, texts
+from pvlvrt_compliance.cli.options.option import Option, flag, text, texts
 
 _PANEL = "Selection"
 
@@ -26,6 +26,9 @@ OPTIONS: dict[str, Option] = {
     "failed_first": flag("--failed-first", help="Run those tests first, then the others.", panel=_PANEL),
     "fail_fast": flag("--fail-fast", "-x", help="End at the first test that is not passed.", panel=_PANEL),
     "include_long": flag("--include-long", help="Run tests of half an hour, too.", panel=_PANEL),
+    "shard": text(
+        "--shard", "I/N", "Run one of N parts, which pvlvrt-check merge puts together again: --shard 2/5", _PANEL
+    ),
     "list_only": flag("--list", help="Show the selected tests and stop.", panel=_PANEL, more={"is_eager": True}),
     "list_json": flag(
         "--json", help="With --list: as JSON, for programs.", panel=_PANEL, more={"callback": _goes_with_the_list}

@@ -13,6 +13,7 @@ from pvlvrt_compliance.controllers.door import Door, DoorCall, DoorError
 from pvlvrt_compliance.controllers.fmu.instance import Fmu, laid_out
 from pvlvrt_compliance.controllers.fmu.model import read_model
 from pvlvrt_compliance.controllers.given_parameters import checked_parameters, seconds
+from pvlvrt_compliance.controllers.library.besides import besides_of_archive
 from pvlvrt_compliance.controllers.mapping.commands import check_commands
 from pvlvrt_compliance.controllers.mapping.constants import set_constants
 from pvlvrt_compliance.controllers.mapping.file import load_mapping, mapping_path
@@ -76,6 +77,17 @@ class FmuDoor(Door):
             notes=self._model.notes,
             mapping=self._mapping_file,
         )
+
+    def besides(self) -> str:
+        """What its binary takes from elsewhere than its archive, as far as that says."""
+        folder = self._model.binary.rpartition("/")[0]
+        with zipfile.ZipFile(self._file) as archive:
+            beside = {Path(name).name for name in archive.namelist() if name.startswith(f"{folder}/")}
+            return besides_of_archive(archive.read(self._model.binary), beside - {Path(self._model.binary).name})
+
+    def may_be_listed(self) -> bool:
+        """Files may be listed."""
+        return True
 
     def open(self, nominal: Nominal) -> DoorCall:
         """Unpack, load and initialise it; make the function that the loop calls."""

@@ -75,6 +75,7 @@ class FmuModel(NamedTuple):
     version: str  # first figure of FMI's version
     name: str
     identifier: str  # stem of its binary
+    binary: str  # its place in the archive
     token: str  # by which the binary knows that the description is its own
     sample_time_s: float | None  # by its description (s)
     inputs: tuple[Variable, ...]
@@ -94,12 +95,13 @@ def read_model(file: Path) -> FmuModel:
     model, notes = _description(file)
     version = str(model.fmiVersion)[0]
     _refuse_other_kinds(model, version)
-    _refuse_other_platforms(file, model.coSimulation.modelIdentifier, version)
+    binary = _binary(file, model.coSimulation.modelIdentifier, version)
     variables = [v for v in model.modelVariables if v.alias is None]
     return FmuModel(
         version=version,
         name=" ".join(filter(None, (model.modelName, model.version))),
         identifier=model.coSimulation.modelIdentifier,
+        binary=binary,
         token=model.guid,
         sample_time_s=_sample_time_s(model, _clock_intervals(file)),
         inputs=_ports(variables, "input", _TYPES[version]),
@@ -156,13 +158,21 @@ def _refuse_other_kinds(model: Any, version: str) -> None:
     raise DoorError(f"it is an FMU for {' and '.join(found) or 'nothing'} only; export it for co-simulation")
 
 
-def _refuse_other_platforms(file: Path, identifier: str, version: str) -> None:
+def _binary(file: Path, identifier: str, version: str) -> str:
+    """Place of the binary for this platform in the archive.
+
+    Raises
+    ------
+    DoorError
+        When there is none, with those that there are.
+    """
     library = fmi_library()
     here = library.platform_tuple if version == "3" else library.platform
     with zipfile.ZipFile(file) as archive:
         names = [name for name in archive.namelist() if not name.endswith("/")]
-    if f"binaries/{here}/{identifier}{library.sharedLibraryExtension}" in names:
-        return
+    own = f"binaries/{here}/{identifier}{library.sharedLibraryExtension}"
+    if own in names:
+        return own
     platforms = sorted({name.split("/")[1] for name in names if name.startswith("binaries/") and name.count("/") > 1})
     if any(name.startswith("sources/") for name in names):
         platforms.append("source code, to be compiled by its tool")

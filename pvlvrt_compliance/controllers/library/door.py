@@ -83,6 +83,14 @@ class LibraryDoor(Door):
             mapping=self._mapping_file,
         )
 
+    def besides(self) -> str:
+        """What the library takes from elsewhere, as far as its file says."""
+        return self._library.besides()
+
+    def may_be_listed(self) -> bool:
+        """Files may be listed."""
+        return True
+
     def open(self, nominal: Nominal) -> DoorCall:
         """Allocate an instance; the library's own first calls follow when its inputs are there."""
         instance = LibraryInstance(self._info, self._settings)

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from pvlvrt_compliance.controllers.door import DoorError
+from pvlvrt_compliance.controllers.library.besides import besides_of_library
 
 SUFFIXES = (".so", ".dylib", ".dll")
 """Names of shared libraries end so, whatever the system."""
@@ -48,6 +49,7 @@ class Library:
         content = file.read_bytes()
         _check_format(file.name, content)
         self.digest = hashlib.sha256(content).hexdigest()
+        self._file = file
         self._folder = Path(tempfile.mkdtemp(prefix="pvlvrt-library-"))
         try:
             self._functions = self._load(file)
@@ -61,6 +63,10 @@ class Library:
         if function is not None:
             function.restype, function.argtypes = result, arguments
         return function
+
+    def besides(self) -> str:
+        """What decides what it does besides its file, in words (`besides_of_library`)."""
+        return besides_of_library(self._file.read_bytes())
 
     def close(self) -> None:
         """Remove the copy, as far as the system lets go of it; the process ends soon after."""

@@ -97,8 +97,18 @@ class MappingFile(_Table):
     bases: Bases = Bases()
     currents: Direction = Field(default="out_of_inverter", description="positive phase currents that name no direction")
     output_kind: OutputKind | None = Field(default=None, description="of two kinds of commands that are complete")
+    files: tuple[str, ...] = Field(
+        default=(),
+        description="all that the controller is made of and reads besides its own file, by names or patterns",
+    )
 
     _places: Places = PrivateAttr(default=Places("mapping", {}))
+    _listed: tuple[Path, ...] = PrivateAttr(default=())
+
+    @property
+    def listed(self) -> tuple[Path, ...]:
+        """The files that it lists, each once, in the order of their names."""
+        return self._listed
 
     def problem(self, location: Location, text: str) -> str:
         """A problem in words: file, line, key, what is wrong."""
@@ -118,7 +128,42 @@ def load_mapping(path: str | Path | None) -> MappingFile | None:
     source = Source(Path(path), MAPPING)
     mapping = read_model(source, MappingFile)
     mapping._places = source.places
+    mapping._listed = _listed_in(Path(path).parent, mapping)
     return mapping
+
+
+def _listed_in(folder: Path, mapping: MappingFile) -> tuple[Path, ...]:
+    """Files of a folder that a mapping lists.
+
+    Raises
+    ------
+    DoorError
+        When one is not there, or outside of the folder.
+    """
+    found: set[Path] = set()
+    problems = []
+    for k, name in enumerate(mapping.files):
+        try:
+            files = _in_folder(folder, name)
+        except ValueError as error:
+            problems.append(mapping.problem(("files", k), str(error)))
+        else:
+            found.update(files)
+    if problems:
+        raise refusal(mapping._places.origin, problems)
+    return tuple(sorted(found))
+
+
+def _in_folder(folder: Path, name: str) -> list[Path]:
+    if not name or Path(name).is_absolute() or ".." in Path(name).parts:
+        raise ValueError(f"{name!r} must be the name of a file in the folder of the mapping, or a pattern (src/*.py)")
+    files = [file for file in folder.glob(name) if file.is_file()]
+    outside = [file for file in files if not file.resolve().is_relative_to(folder.resolve())]
+    if outside:
+        raise ValueError(f"{outside[0].relative_to(folder)} is a link to a file outside of the folder of the mapping")
+    if not files:
+        raise ValueError(f"there is no file {name} in the folder of the mapping")
+    return files
 
 
 def refusal(origin: str, problems: Sequence[str]) -> DoorError:

@@ -8,18 +8,16 @@ that the simulated time reached and what the controller has printed are there wh
 import json
 import pickle
 import queue
-import signal
 import subprocess
-import sys
 import threading
 from collections.abc import Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from pvlvrt_compliance.controllers.process import command, family
+from pvlvrt_compliance.controllers.process.child import end, killed_by, start
 from pvlvrt_compliance.controllers.process.family import FORKS
 from pvlvrt_compliance.controllers.process.scratch import clear_abandoned, job_folder
 from pvlvrt_compliance.errors import OutputError, PvlvrtError
@@ -29,7 +27,6 @@ JOB, ANSWER, SAID, PROGRESS, RECORD = "job.pickle", "answer.json", "said.txt", "
 """Files in the folder of a job."""
 
 _SAID_LINES, _SAID_CHARACTERS = 8, 800
-_PATIENCE_S = 0.5  # with a server that is to end
 
 
 class Ended(NamedTuple):
@@ -86,18 +83,7 @@ class Server:
         process, self._process = self._process, None
         if process is None:
             return
-        left = family.descendants(process.pid)
-        if process.stdin is not None:
-            process.stdin.close()  # a server that forks ends its job and itself then
-        if FORKS:
-            with suppress(subprocess.TimeoutExpired):  # it is not ready for any job yet
-                process.wait(_PATIENCE_S)
-        else:
-            family.kill_group(process.pid)
-        process.kill()
-        process.wait()
-        for other in left:
-            family.kill(other)
+        end(process, listens=FORKS)  # a server that forks ends its job and itself with its input
 
     def _await(self, folder: Path, limit_s: float) -> str:
         """Have a job done; why it ended, in words."""
@@ -135,18 +121,8 @@ class Server:
 
     def _start(self) -> "subprocess.Popen[str]":
         clear_abandoned()
-        command.before_children()
-        code = (
-            f"import sys; sys.path[:] = {sys.path!r}; "
-            "from pvlvrt_compliance.controllers.process.worker import main; main()"
-        )
-        process = subprocess.Popen(
-            [sys.executable, "-c", code],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            encoding="utf-8",
-            errors="surrogateescape",
-            start_new_session=True,  # Ctrl-C goes to the command alone, which then ends this process
+        process: subprocess.Popen[str] = start(
+            "pvlvrt_compliance.controllers.process.worker", encoding="utf-8", errors="surrogateescape"
         )
         self._lines = queue.Queue()
         threading.Thread(target=_read, args=(process, self._lines), daemon=True).start()
@@ -169,13 +145,8 @@ def _read(process: "subprocess.Popen[str]", lines: "queue.Queue[str | None]") ->
 
 
 def _in_words(status: int) -> str:
-    if status < 0:
-        try:
-            name = signal.Signals(-status).name
-        except ValueError:
-            name = str(-status)
-        return f"the controller crashed ({name})"
-    return f"the controller ended the process (status {status})"
+    killer = killed_by(status)
+    return f"the controller crashed ({killer})" if killer else f"the controller ended the process (status {status})"
 
 
 def _tail_of(file: Path) -> str:

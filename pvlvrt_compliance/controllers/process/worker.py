@@ -14,11 +14,11 @@ from typing import IO, Any
 
 import numpy as np
 
-from pvlvrt_compliance.compiled.notes import tell_in_lines
 from pvlvrt_compliance.controllers.description import Value
-from pvlvrt_compliance.controllers.door import Door
+from pvlvrt_compliance.controllers.door import Door, described
 from pvlvrt_compliance.controllers.doors import door_to
 from pvlvrt_compliance.controllers.process import command, family
+from pvlvrt_compliance.controllers.process.child import own_pipes
 from pvlvrt_compliance.controllers.process.isolation import ANSWER, JOB, PROGRESS, RECORD, SAID
 from pvlvrt_compliance.errors import PvlvrtError, SimulationError
 from pvlvrt_compliance.scenario.scenario import Scenario
@@ -49,15 +49,12 @@ class RunJob(DescribeJob):
 
 def main() -> None:
     """Serve: a line in, the folder of a job; lines out, `ready`, then `started PID` and `ended STATUS` for each."""
-    jobs = os.fdopen(os.dup(0), encoding="utf-8", errors="surrogateescape")
-    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    nothing = os.open(os.devnull, os.O_RDWR)
-    os.dup2(nothing, 0)
-    os.dup2(2, 1)  # whatever is printed from here on is no answer
+    told, answered = own_pipes()
+    jobs = os.fdopen(told, encoding="utf-8", errors="surrogateescape")
+    answers = os.fdopen(answered, "w", encoding="utf-8")
     command.become_the_server()
     from pvlvrt_compliance.controllers.run import warm_up
 
-    tell_in_lines()
     warm_up()
     _say(answers, "ready")
     while line := jobs.readline():
@@ -116,7 +113,7 @@ def _answer(job: DescribeJob, folder: Path) -> dict[str, Any]:
 
 def _use(door: Door, job: DescribeJob, folder: Path) -> dict[str, Any]:
     if not isinstance(job, RunJob):
-        return {"description": door.describe().to_json()}
+        return {"description": described(door).to_json()}
     from pvlvrt_compliance.controllers.run import run_through
 
     if door.describe().digest != job.digest:

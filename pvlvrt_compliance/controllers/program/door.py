@@ -18,7 +18,7 @@ from pvlvrt_compliance.controllers.mapping.file import load_mapping
 from pvlvrt_compliance.controllers.mapping.sides import map_inputs, map_outputs
 from pvlvrt_compliance.controllers.mapping.ties import Mapped, RawPort
 from pvlvrt_compliance.controllers.program.hello import PortAnswer, as_line, greeting, hello_in, shown, table_in
-from pvlvrt_compliance.controllers.program.link import Conversation, command_of, files_of, link_to
+from pvlvrt_compliance.controllers.program.link import STDIO, TCP, Conversation, command_of, files_of, link_to
 from pvlvrt_compliance.simulation.door.blocks import Block, block_memory
 from pvlvrt_compliance.simulation.door.native_call import FUNCTION, address_of, guarded
 from pvlvrt_compliance.units import Nominal
@@ -26,7 +26,7 @@ from pvlvrt_compliance.units import Nominal
 TIMEOUT = "reply_timeout_s"
 """Parameter that every program takes here besides its own."""
 
-SCHEMES = ("stdio:", "tcp://")
+SCHEMES = (STDIO, TCP)
 
 _STARTING_S = 30.0  # to start, and to get ready
 _REPLY_S = 10.0
@@ -76,6 +76,15 @@ class ProgramDoor(Door):
         inputs, outputs = self._mapped(Nominal())
         found = self._hello.description(self._digest())
         return replace(found, inputs=inputs.ports, outputs=outputs.ports, mapping=self._mapping_file)
+
+    def besides(self) -> str:
+        """What a program reads and runs is not known."""
+        here = "a program may read and run anything"
+        return here if self.may_be_listed() else "it is not known what program runs behind an address"
+
+    def may_be_listed(self) -> bool:
+        """Of a program that is started here; one that runs already need not be that of its files."""
+        return self._spec.startswith("stdio:")
 
     def open(self, nominal: Nominal) -> DoorCall:
         """Have it start, and make the function that the loop calls."""
@@ -128,7 +137,7 @@ class ProgramDoor(Door):
     def _digest(self) -> str:
         """Of the files that a command names; of a program that runs elsewhere, what it answers."""
         digest = hashlib.sha256()
-        files = files_of(command_of(self._spec)) if self._spec.startswith("stdio:") else []
+        files = files_of(command_of(self._spec)) if self.may_be_listed() else []
         for part in [file.read_bytes() for file in files] or [self._answer]:
             digest.update(hashlib.sha256(part).digest())
         return digest.hexdigest()

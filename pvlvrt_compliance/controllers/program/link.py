@@ -14,6 +14,9 @@ from typing import Protocol
 
 from pvlvrt_compliance.controllers.door import DoorError
 
+STDIO, TCP = "stdio:", "tcp://"
+"""How the two are written."""
+
 _AT_ONCE = 1 << 16
 _LONGEST_LINE = 1 << 20
 _LONGEST_REASON = 4096
@@ -128,9 +131,9 @@ def link_to(spec: str, timeout_s: float) -> Link:
     DoorError
         When that cannot be done.
     """
-    if spec.startswith("stdio:"):
+    if spec.startswith(STDIO):
         return Pipes(command_of(spec))
-    host, _, port = spec.removeprefix("tcp://").rpartition(":")
+    host, _, port = spec.removeprefix(TCP).rpartition(":")
     if not (host and port.isdecimal() and 0 < int(port) < 1 << 16):
         raise DoorError("write tcp://HOST:PORT, for instance tcp://127.0.0.1:5000")
     return Connection(host.strip("[]"), int(port), timeout_s)
@@ -145,7 +148,7 @@ def command_of(spec: str) -> list[str]:
         When there are none, or a quote does not end.
     """
     try:
-        words = shlex.split(spec.removeprefix("stdio:"), posix=os.name != "nt")
+        words = shlex.split(spec.removeprefix(STDIO), posix=os.name != "nt")
     except ValueError as error:
         raise DoorError(f"{spec.removeprefix('stdio:')!r} is not a command: {error}") from None
     if not words:

@@ -18,6 +18,7 @@ from pvlvrt_compliance.controllers.channels import check_channel
 from pvlvrt_compliance.controllers.description import Description, ParameterInfo, Port, Value
 from pvlvrt_compliance.controllers.door import Door, DoorCall, DoorError
 from pvlvrt_compliance.controllers.given_parameters import checked_parameters
+from pvlvrt_compliance.controllers.mapping.file import load_mapping, mapping_path
 from pvlvrt_compliance.errors import did_you_mean
 from pvlvrt_compliance.simulation.door.blocks import MODULATING, VOLTAGES, real_block
 from pvlvrt_compliance.simulation.door.exchange import COMMANDS, SIGNALS
@@ -39,8 +40,9 @@ class PythonDoor(Door):
         File and class, ``my_ctrl.py:MyController``.
     given : mapping
         Parameters that the user has set.
-    mapping : None
-        It takes its measurements by their names.
+    mapping : str, optional
+        Mapping file, which can only list files: it takes its measurements by their names. By default one beside its
+        file that does.
 
     Raises
     ------
@@ -51,19 +53,20 @@ class PythonDoor(Door):
     written = "FILE.py:CLASS"
     suffixes = (_SUFFIX,)
 
+    _mapping_file: str | None = None
+
     def __init__(self, spec: str, given: Mapping[str, Value], mapping: str | None = None) -> None:
         file, _, self._class_name = spec.rpartition(":")
         self._file = Path(file)
         if Path(spec).suffix == _SUFFIX:
             raise DoorError(f"name the class, too: {spec}:MyController")
-        if mapping is not None:
-            raise DoorError("a Python class takes its measurements by their names; --mapping does not go with it")
         if not file or not self._class_name.isidentifier():
             raise DoorError("write FILE.py:CLASS")
         if not self._file.is_file():
             raise DoorError(f"there is no file {self._file}")
         self._begin(_class_in(self._file, self._class_name), given)
         self._digest = hashlib.sha256(self._file.read_bytes()).hexdigest()
+        self._mapping_file = _list_of_files(file, mapping)
 
     def _begin(self, made: Any, given: Mapping[str, Value]) -> None:
         """Make the controller, and see that it is one."""
@@ -87,7 +90,16 @@ class PythonDoor(Door):
             inputs=tuple(Port(name, unit_of(name), mapped_to=name) for name in SIGNALS),
             outputs=tuple(Port(name, unit_of(name), mapped_to=name) for name in commands),
             parameters=self._parameters,
+            mapping=self._mapping_file,
         )
+
+    def besides(self) -> str:
+        """What a class imports and reads is not known."""
+        return "a Python class may import and read anything"
+
+    def may_be_listed(self) -> bool:
+        """Files may be listed."""
+        return True
 
     @property
     def _in_volts(self) -> bool:
@@ -175,6 +187,22 @@ class PythonDoor(Door):
 
 
 DOOR = PythonDoor
+
+
+def _list_of_files(file: str, named: str | None) -> str | None:
+    """The mapping file, where it lists files.
+
+    Raises
+    ------
+    DoorError
+        When one is named that ties ports; one that lies there may be of a library of the same name.
+    """
+    path = mapping_path(file, named)
+    mapping = load_mapping(path)
+    if named is not None and mapping is not None and mapping.model_fields_set - {"files"}:
+        said = "a Python class takes its measurements by their names"
+        raise DoorError(f"{said}; --mapping does not go with it, but for one that only lists files (files = [...])")
+    return path if mapping is not None and mapping.files else None
 
 
 def _class_in(file: Path, name: str) -> Any:

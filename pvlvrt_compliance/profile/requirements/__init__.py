@@ -25,7 +25,14 @@ from pvlvrt_compliance.profile.requirements.power import (
     ReturnToPrefault,
 )
 from pvlvrt_compliance.profile.requirements.quality import DcInjection, DcRipple, Harmonics
-from pvlvrt_compliance.profile.requirements.table import BUILT_IN, Kinds, Requirements, requirements_of
+from pvlvrt_compliance.profile.requirements.table import (
+    BUILT_IN,
+    Kinds,
+    Requirements,
+    kinds_of,
+    requirements_of,
+    unfilled,
+)
 
 __all__ = [
     "BUILT_IN",
@@ -53,5 +60,7 @@ __all__ = [
     "RideThrough",
     "SupportDynamics",
     "Toggling",
+    "kinds_of",
     "requirements_of",
+    "unfilled",
 ]

@@ -1,5 +1,6 @@
 """What all requirements share."""
 
+from functools import cached_property
 from typing import ClassVar
 
 from pydantic import Field
@@ -19,7 +20,7 @@ class Requirement(Frozen):
     clause: str = Field(min_length=1)
     source: str = Field(min_length=1)
 
-    @property
+    @cached_property
     def confidence(self) -> str:
         """The weakest mark of its numbers."""
         return weakest(item.confidence for _, item in marks_in(self))

@@ -1,14 +1,16 @@
 """The demands of a profile: an open table of requirements by kind."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
-from typing import Any
+from typing import Any, TypeVar, get_args
 
 from pydantic import Field, create_model
 
 from pvlvrt_compliance.data.marks import Frozen
 from pvlvrt_compliance.profile.requirements import connection, current, power, quality
 from pvlvrt_compliance.profile.requirements.base import CustomRequirement, Requirement
+
+Model = TypeVar("Model")
 
 Kinds = Mapping[str, type[Requirement]]
 """Model of each kind of requirement that a profile may have, in the order of a report."""
@@ -41,7 +43,25 @@ class Requirements(Frozen):
 
     def of_kind(self, kind: str) -> Any:
         """The demand of one kind, None where the profile makes none."""
-        return dict(self.by_kind()).get(kind)
+        if kind in self.custom:
+            return self.custom[kind]
+        return getattr(self, kind) if kind != "custom" and kind in type(self).model_fields else None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For another process, which has no such class by its name, but can make it of the kinds."""
+        return unfilled, (requirements_of, kinds_of(type(self))), self.__getstate__()
+
+
+def kinds_of(model: type[Requirements]) -> dict[str, type[Requirement]]:
+    """The kinds that a model of demands was made with, as of `requirements_of`."""
+    fields = {name: get_args(info.annotation) for name, info in model.model_fields.items() if name != "custom"}
+    return {kind: demand for kind, (demand, _) in fields.items()}
+
+
+def unfilled(model_of: Callable[[Kinds], type[Model]], kinds: Kinds) -> Model:
+    """An object of a model that is made of kinds, without its values: what `pickle` begins with."""
+    model = model_of(kinds)
+    return model.__new__(model)
 
 
 def requirements_of(kinds: Kinds) -> type[Requirements]:

@@ -17,9 +17,10 @@ from pvlvrt_compliance.report.comparison.words import (
     value,
 )
 from pvlvrt_compliance.report.drawing import colours
-from pvlvrt_compliance.report.drawing.in_page import Figures, figures_of, plotly_packed
+from pvlvrt_compliance.report.drawing.in_page import Figures, figures_of, styled
 from pvlvrt_compliance.report.drawing.looks import Looks
 from pvlvrt_compliance.report.drawing.model import Drawing
+from pvlvrt_compliance.report.drawing.plotly_js import plotly_packed
 from pvlvrt_compliance.report.formats.html import environment, read
 from pvlvrt_compliance.report.language import Texts
 from pvlvrt_compliance.resources import resource_folder
@@ -63,7 +64,7 @@ def render(comparison: Comparison, drawings: Mapping[Key, Drawing], left_out: Se
     looks = Looks()
     drawn = [change for change in comparison.changes if change.key in drawings]
     overlays = [
-        _Overlay(change, heads, figures_of(drawings[change.key], texts, looks))
+        _Overlay(change, heads, styled(figures_of(drawings[change.key], texts), looks))
         for change, heads in zip(drawn, _headings(drawn), strict=True)
     ]
     known = environment(folder, texts.language)

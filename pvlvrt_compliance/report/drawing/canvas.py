@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.report.drawing.frame import Frame
-from pvlvrt_compliance.report.drawing.model import Drawing, OnGrid, Panel, Places, Point, Scale, span_of
+from pvlvrt_compliance.report.drawing.model import Drawing, OnGrid, Panel, Places, Point, Scale
+from pvlvrt_compliance.report.drawing.spans import span_of
 
 Array = NDArray[np.float64]
 
@@ -25,15 +26,20 @@ class Canvas(NamedTuple):
     scales: tuple[Scale, Scale] = ("linear", "linear")
     instants: tuple[float, ...] = ()  # in units
 
-    def across(self, x: Places) -> Array:
+    def across(self, x: Places | Array) -> Array:
         """Places in units from the left."""
-        known: Array = np.asarray(x.first + x.step * x.numbers if isinstance(x, OnGrid) else x, dtype=np.float64)
-        return self.width * _shares(known, self.x, self.scales[0])
+        return self.width * _shares(floats(x), self.x, self.scales[0])
 
     def down(self, y: Sequence[float] | Any) -> Array:
         """Values in units from the top."""
         with np.errstate(over="ignore"):  # what is beyond all numbers is a gap
-            return self.height * (1 - _shares(np.asarray(y, dtype=np.float64), self.y, self.scales[1]))
+            return self.height * (1 - _shares(floats(y), self.y, self.scales[1]))
+
+
+def floats(of: Places | Array) -> Array:
+    """Places, or values, as an array of float64."""
+    found: Array = np.asarray(of.first + of.step * of.numbers if isinstance(of, OnGrid) else of, dtype=np.float64)
+    return found
 
 
 def canvas_of(panel: Panel, drawing: Drawing, frame: Frame) -> Canvas:

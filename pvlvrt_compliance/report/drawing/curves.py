@@ -88,7 +88,7 @@ def known(shown: Shown) -> Samples | None:
         found = shown.series()
     except MeasurementError:
         return None
-    return found if np.isfinite(found).any() else None
+    return found if np.isfinite(found[:1]).all() or np.isfinite(found).any() else None
 
 
 def _phases(kind: str, series: Callable[[], Samples]) -> list[Shown]:
@@ -122,7 +122,7 @@ def _no_load(evidence: Evidence) -> Samples:
     """V+ of the source, known nowhere where it is all along that of the terminals."""
     source = no_load_series_pu(evidence, 0)
     apart = np.abs(source - evidence.voltage_positive_pu)
-    return source if (apart[np.isfinite(apart)] > _SAME_PU).any() else np.full(len(source), np.nan)
+    return source if ((apart > _SAME_PU) & (apart < np.inf)).any() else np.full(len(source), np.nan)
 
 
 def _frequency(evidence: Evidence) -> Shown:

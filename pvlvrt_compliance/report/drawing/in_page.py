@@ -1,6 +1,5 @@
 """The figures of a test as a page has them: one a panel, and what `figures.js` needs to draw them."""
 
-from functools import cache
 from typing import NamedTuple
 
 from markupsafe import Markup
@@ -9,8 +8,7 @@ from pvlvrt_compliance.report.drawing import plotly_json, svg
 from pvlvrt_compliance.report.drawing.frame import frame_of
 from pvlvrt_compliance.report.drawing.looks import Looks
 from pvlvrt_compliance.report.drawing.model import Drawing, Over, Panel, Zoom
-from pvlvrt_compliance.report.drawing.packing import compressed, packed
-from pvlvrt_compliance.report.drawing.plotly_js import plotly_js
+from pvlvrt_compliance.report.drawing.packing import packed
 from pvlvrt_compliance.report.language import Texts
 
 
@@ -22,7 +20,7 @@ class Figure(NamedTuple):
     says: str
     over: Over
     height: int  # px
-    picture: Markup  # SVG
+    picture: str  # SVG
 
 
 class Figures(NamedTuple):
@@ -33,28 +31,24 @@ class Figures(NamedTuple):
     data: str
 
 
-def figures_of(drawing: Drawing, texts: Texts, looks: Looks) -> Figures:
-    """The figures of a drawing in a language; the page has the style of the looks besides."""
+def figures_of(drawing: Drawing, texts: Texts) -> Figures:
+    """The figures of a drawing in a language; they may wait as they are for a page, which has them `styled`."""
     data = [plotly_json.render(panel, drawing, texts) for panel in drawing.panels]
-    each = tuple(_figure(panel, drawing, texts, looks) for panel in drawing.panels)
+    pictures = svg.figures(drawing.panels, drawing, texts, "page")
+    each = tuple(
+        _figure(panel, picture, drawing, texts) for panel, picture in zip(drawing.panels, pictures, strict=True)
+    )
     zooms = tuple(zoom._replace(name=texts.named("plot.zoom", zoom.name)) for zoom in drawing.zooms)
     return Figures(each, zooms, packed(data))
 
 
-@cache
-def plotly_packed() -> str:
-    """Plotly's JavaScript, compressed, which `figures.js` runs once the first figure comes into view.
-
-    Raises
-    ------
-    PvlvrtError
-        When it is missing from the installation.
-    """
-    return compressed(plotly_js().encode())
+def styled(figures: Figures, looks: Looks) -> Figures:
+    """Figures whose pictures are markup of a page that has the style of the looks besides."""
+    each = (figure._replace(picture=Markup(looks.shortened(figure.picture))) for figure in figures.each)
+    return figures._replace(each=tuple(each))
 
 
-def _figure(panel: Panel, drawing: Drawing, texts: Texts, looks: Looks) -> Figure:
+def _figure(panel: Panel, picture: str, drawing: Drawing, texts: Texts) -> Figure:
     title = texts(f"figure.{panel.key}.title") if panel.key else panel.title
     says = panel.says.said(texts) if panel.says else ""
-    picture = Markup(looks.shortened(svg.figure(panel, drawing, texts, "page")))
     return Figure(panel.key, title, says, panel.over, frame_of(panel, drawing, texts).height, picture)

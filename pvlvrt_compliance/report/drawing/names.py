@@ -1,6 +1,7 @@
 """What curves and areas are called in the language of a report."""
 
 import re
+from functools import lru_cache
 
 from pvlvrt_compliance.report.language import Texts
 
@@ -15,6 +16,7 @@ _WITH_NUMBERS = {
 _OF_A_RUN = re.compile(r"(?P<name>.+) \((?P<run>old|new)\)")
 
 
+@lru_cache(maxsize=1024)
 def curve_name(name: str, texts: Texts) -> str:
     """What a curve, an area or a set of bars is called; one that no catalogue knows keeps its name."""
     if found := _OF_A_RUN.fullmatch(name):

@@ -10,8 +10,9 @@ from pvlvrt_compliance.report.drawing.curves import Group, Shown, groups_of, kno
 from pvlvrt_compliance.report.drawing.instants import steps_of
 from pvlvrt_compliance.report.drawing.limits import limits_of
 from pvlvrt_compliance.report.drawing.model import Axis, Drawing, Line, Mark, Panel, Point, Spot, Text
-from pvlvrt_compliance.report.drawing.of_test import TIME, cycle_of, drawn, height_of
+from pvlvrt_compliance.report.drawing.of_test import TIME, cycle_of, drawn, height_of, reach_of
 from pvlvrt_compliance.report.drawing.parts import BUCKETS, Part, grids_of
+from pvlvrt_compliance.report.drawing.thinning import Series, sketches
 from pvlvrt_compliance.report.drawing.worst import worst_of
 from pvlvrt_compliance.results import Band, TestResult, Verdict
 from pvlvrt_compliance.waveforms.container import Samples, Waveforms
@@ -144,9 +145,10 @@ def _panel(old: _Shown, new: _Shown, window: Point) -> Panel | None:
 
 def _curves(one: _Shown) -> Iterator[Line]:
     """Curves of a run, with its name; those of the old one are dotted, and grey where those of the new are black."""
-    finest = _PART_OF_THE_HEIGHT * height_of(one.group, [samples for _, samples in one.found])
-    for shown, samples in one.found:
-        line, _ = drawn(shown, samples, one.parts, min(shown.fine, finest), cycle_of(one.run.evidence))
+    finest = _PART_OF_THE_HEIGHT * height_of(one.group, [reach_of(samples) for _, samples in one.found])
+    series = [Series(samples, min(shown.fine, finest)) for shown, samples in one.found]
+    for (shown, _), sketch in zip(one.found, sketches(series, one.parts), strict=True):
+        line, _ = drawn(shown, sketch, cycle_of(one.run.evidence))
         if line is None:
             continue
         name = f"{shown.name} ({one.name})"

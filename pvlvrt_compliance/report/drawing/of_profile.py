@@ -11,7 +11,8 @@ from pvlvrt_compliance.profile.regions import FOR_EVER, Region, RegionTable
 from pvlvrt_compliance.profile.requirements import ReactiveCurrent, RideThrough
 from pvlvrt_compliance.profile.requirements.current import beyond_dead_band
 from pvlvrt_compliance.report.drawing.colours import OF_A_PROFILE, of_mode
-from pvlvrt_compliance.report.drawing.model import Area, Axis, Line, Panel, Points, Run, Scale, Strip, span_of
+from pvlvrt_compliance.report.drawing.model import Area, Axis, Line, Panel, Points, Run, Scale, Strip
+from pvlvrt_compliance.report.drawing.spans import span_of
 
 _SHORTEST_S = 0.01  # where a logarithmic axis of time begins
 _LOG_FROM = 30.0  # ratio of the longest to the shortest time that a linear axis no longer shows

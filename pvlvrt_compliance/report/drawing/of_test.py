@@ -1,6 +1,8 @@
 """The drawing of a test: the evidence that was judged, and the limits that it was held against."""
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,14 +12,14 @@ from pvlvrt_compliance.report.drawing import characteristics, spectra
 from pvlvrt_compliance.report.drawing.curves import Group, Shown, groups_of, known
 from pvlvrt_compliance.report.drawing.instants import marks_of, shades_of, steps_of, zooms_of
 from pvlvrt_compliance.report.drawing.limits import limits_of
-from pvlvrt_compliance.report.drawing.model import Area, Axis, Drawing, Line, Panel
+from pvlvrt_compliance.report.drawing.model import Area, Axis, Drawing, Line, Panel, Point
 from pvlvrt_compliance.report.drawing.moments import instants_of, with_times
 from pvlvrt_compliance.report.drawing.orbits import array_path, hodograph
 from pvlvrt_compliance.report.drawing.parts import BUCKETS, Part, grids_of, parts_of
 from pvlvrt_compliance.report.drawing.sentences import says_of
-from pvlvrt_compliance.report.drawing.thinning import sketched
+from pvlvrt_compliance.report.drawing.thinning import Series, Sketch, sketches
 from pvlvrt_compliance.report.drawing.worst import worst_of
-from pvlvrt_compliance.results import TestResult
+from pvlvrt_compliance.results import Band, TestResult
 from pvlvrt_compliance.waveforms.breaker import opened_at_s
 from pvlvrt_compliance.waveforms.container import Samples
 
@@ -51,7 +53,7 @@ def drawing(evidence: Evidence, result: TestResult, *, buckets: int = BUCKETS) -
     span, opened_s = (waveforms.t0_s, waveforms.end_s), opened_at_s(waveforms)
     instants_s = [step.at_s for step in steps_of(result)] + ([] if opened_s is None else [opened_s])
     parts = parts_of(grids_of(waveforms), instants_s, cycle_of(evidence), buckets)
-    over_time = (_panel(group, evidence, result, parts) for group in groups_of(evidence, result.bands))
+    over_time = _over_time(evidence, result, parts)
     return Drawing(
         panels=_in_order(panel for panel in (*over_time, *_over_others(evidence, result)) if panel is not None),
         span=span,
@@ -87,36 +89,68 @@ def cycle_of(evidence: Evidence) -> float:
         return 1 / evidence.nominal.frequency_hz
 
 
-def _panel(group: Group, evidence: Evidence, result: TestResult, parts: Sequence[Part]) -> Panel | None:
-    """A panel with its limits; none where there is no curve to hold against them, or nothing to be seen."""
-    curves: list[Line] = []
-    bands: list[Area] = []
+class _Plan(NamedTuple):
+    """A panel before its curves are sketched."""
+
+    group: Group
+    limits: Sequence[Band]
+    lines: tuple[Line, ...]  # of limits
+    areas: tuple[Area, ...]
+    instants: tuple[Line, ...]
+    found: Sequence[tuple[Shown, Samples]]
+    finest: float
+
+    @property
+    def series(self) -> list[tuple[Shown, Series]]:
+        """The curves from the back to the front, each with what may be left out of it."""
+        by_depth = sorted(self.found, key=lambda one: not one[0].is_faint)
+        return [(shown, Series(samples, min(shown.fine, self.finest))) for shown, samples in by_depth]
+
+
+def _over_time(evidence: Evidence, result: TestResult, parts: Sequence[Part]) -> Iterator[Panel | None]:
+    """Panels over time; the curves of all of them are sketched at once."""
+    plans = [plan for group in groups_of(evidence, result.bands) if (plan := _plan(group, evidence, result))]
+    series = [plan.series for plan in plans]
+    sketched = iter(sketches([one for of_plan in series for _, one in of_plan], parts))
+    for plan, of_plan in zip(plans, series, strict=True):
+        curves = [(shown, sketch) for (shown, _), sketch in zip(of_plan, sketched, strict=False)]
+        yield _panel(plan, curves, evidence, result)
+
+
+def _plan(group: Group, evidence: Evidence, result: TestResult) -> _Plan | None:
+    """What a panel is made of; none where there is no curve to hold against its limits, or nothing to be seen."""
     found = [(shown, samples) for shown in group.shown if (samples := known(shown)) is not None]
     if not found:
         return None
     limits = result.bands if group.bands is None else group.bands
     lines, areas = limits_of(limits, group.quantities)
     instants = instants_of(result, group.quantities, [samples for _, samples in found])
-    happens = _happens(group, found, evidence)
+    reaches = [reach_of(samples) for _, samples in found]
+    happens = _happens(group, found, reaches, evidence)
     if not (lines or areas or instants or happens) or (_is_calm(group, evidence) and not happens):
         return None
-    finest = _PART_OF_THE_HEIGHT * height_of(group, [samples for _, samples in found])
-    for shown, samples in sorted(found, key=lambda one: not one[0].is_faint):
-        line, area = drawn(shown, samples, parts, min(shown.fine, finest), cycle_of(evidence))
-        curves += [line] if line else []
-        bands += [area] if area else []
-    if not curves and not bands:
+    finest = _PART_OF_THE_HEIGHT * height_of(group, reaches)
+    return _Plan(group, limits, lines, areas, instants, found, finest)
+
+
+def _panel(plan: _Plan, curves: Sequence[tuple[Shown, Sketch]], evidence: Evidence, result: TestResult) -> Panel | None:
+    """A panel with its limits."""
+    group = plan.group
+    made = [drawn(shown, sketch, cycle_of(evidence)) for shown, sketch in curves]
+    lines = [line for line, _ in made if line]
+    bands = [band for _, band in made if band]
+    if not lines and not bands:
         return None
     return Panel(
         title=group.title,
         x=Axis(TIME, (evidence.waveforms.t0_s, evidence.waveforms.end_s)),
         y=Axis(group.unit, from_zero=group.from_zero),
-        lines=(*curves, *lines, *instants),
-        areas=(*areas, *bands),
+        lines=(*lines, *plan.lines, *plan.instants),
+        areas=(*plan.areas, *bands),
         height=group.height,
         key=group.key,
         says=with_times(says_of(group, result), result, group.quantities),
-        spots=worst_of(group, limits, found, evidence, result),
+        spots=worst_of(group, plan.limits, plan.found, evidence, result),
     )
 
 
@@ -126,7 +160,9 @@ def _is_calm(group: Group, evidence: Evidence) -> bool:
     return group.key == "sequences" and bool(steps) and not any(_IN_PHASES.intersection(step.moved) for step in steps)
 
 
-def _happens(group: Group, found: Sequence[tuple[Shown, Samples]], evidence: Evidence) -> bool:
+def _happens(
+    group: Group, found: Sequence[tuple[Shown, Samples]], reaches: Sequence[Point], evidence: Evidence
+) -> bool:
     """Whether something is to be seen of series that nothing limits.
 
     Instantaneous values of the phases are where what is stepped is seen in them; else one must move that is no wave.
@@ -137,26 +173,30 @@ def _happens(group: Group, found: Sequence[tuple[Shown, Samples]], evidence: Evi
     still = _STILL_OFF_NOMINAL if group.unit == "pu" and evidence.disturbance.frequency_moves else _STILL
     nominal = evidence.nominal
     scales = {"pu": 1.0, "kW": nominal.apparent_power_kva, "kvar": nominal.apparent_power_kva}
-    for shown, samples in found:
-        scale = scales.get(group.unit, float(np.nanmax(np.abs(samples))))
-        if not shown.is_wave and np.nanmax(samples) - np.nanmin(samples) > still * scale:
-            return True
-    return False
+    return any(
+        high - low > still * scales.get(group.unit, max(abs(low), abs(high)))
+        for (shown, _), (low, high) in zip(found, reaches, strict=True)
+        if not shown.is_wave
+    )
 
 
-def height_of(group: Group, found: Sequence[Samples]) -> float:
-    """What the axis of some series reaches over, limits left out."""
-    if not found:
+def reach_of(samples: Samples) -> Point:
+    """The least and the largest of some samples that are not all gaps."""
+    low, high = float(samples.min()), float(samples.max())
+    return (low, high) if math.isfinite(high - low) else (float(np.nanmin(samples)), float(np.nanmax(samples)))
+
+
+def height_of(group: Group, reaches: Sequence[Point]) -> float:
+    """What the axis of series that reach so far reaches over, limits left out."""
+    if not reaches:
         return 0.0
-    lowest, highest = min(float(np.nanmin(x)) for x in found), max(float(np.nanmax(x)) for x in found)
+    lowest, highest = min(low for low, _ in reaches), max(high for _, high in reaches)
     return highest - (min(lowest, 0.0) if group.from_zero else lowest)
 
 
-def drawn(
-    shown: Shown, samples: Samples, parts: Sequence[Part], fine: float, cycle_s: float
-) -> tuple[Line | None, Area | None]:
+def drawn(shown: Shown, sketch: Sketch, cycle_s: float) -> tuple[Line | None, Area | None]:
     """A series as curve, as band, or as both; the curve stands in the legend if there is one."""
-    runs, strips = sketched(samples, parts, fine)
+    runs, strips = sketch
     line = Line(
         name=shown.name,
         runs=runs,

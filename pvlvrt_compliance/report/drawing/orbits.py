@@ -165,7 +165,8 @@ def sketched_path(x: Samples, y: Samples) -> NDArray[np.int64]:
     size = max(np.ptp(x), np.ptp(y), 1e-9)
     scaled = (x / max(np.ptp(x), _FINE * size), y / max(np.ptp(y), _FINE * size))
     # Of a long record a few samples a millisecond: nothing that turns a path is faster.
-    kept = np.unique(np.append(np.arange(0, len(x), max(len(x) // _MOST_SAMPLES, 1)), len(x) - 1))
+    kept = np.arange(0, len(x), max(len(x) // _MOST_SAMPLES, 1))
+    kept = kept if kept[-1] == len(x) - 1 else np.append(kept, len(x) - 1)
     fine = _FINE / 2
     while True:
         kept = kept[bends(fine, kept.astype(np.float64), *(series[kept] for series in scaled))]

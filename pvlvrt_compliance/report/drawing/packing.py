@@ -16,16 +16,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 _STEPS, _GAP = 16_382, 65_535
-_MANY = 12  # values of a list that is placed among the numbers
 _NO_SMALLER = 1.0006  # once it is rounded to four digits
 _DIGITS = 9  # of a number in the JSON: a nanosecond of a second
+
+
+def short(value: float) -> float:
+    """A number as it stands in the JSON of figures."""
+    return float(f"{value:.{_DIGITS}g}")
 
 
 def packed(figures: Any) -> str:
     """Return figures as `plotly_json.render` gives them as one text without anything that could end a script."""
     numbers = bytearray()
-    shrunk = json.dumps(_shrunk(figures, numbers), separators=(",", ":"), allow_nan=False).encode()
-    return compressed(len(shrunk).to_bytes(4, "little") + shrunk + bytes(numbers))
+    described = json.dumps(
+        figures, separators=(",", ":"), allow_nan=False, default=lambda array: _placed(array, numbers)
+    ).encode()
+    return compressed(len(described).to_bytes(4, "little") + described + bytes(numbers))
 
 
 def compressed(content: bytes) -> str:
@@ -33,53 +39,38 @@ def compressed(content: bytes) -> str:
     return base64.b64encode(zlib.compress(content, 9)).decode("ascii")
 
 
-def _shrunk(part: Any, numbers: bytearray) -> Any:
-    """The same without the numbers of arrays, which are added to the others."""
-    if isinstance(part, list):
-        return _shrunk_list(part, numbers)
-    if isinstance(part, dict):
-        if "bdata" in part:
-            return _placed_array(part, numbers)
-        return {name: _shrunk(item, numbers) for name, item in part.items()}
-    return float(f"{part:.{_DIGITS}g}") if isinstance(part, float) else part
+def _placed(array: NDArray[Any], numbers: bytearray) -> dict[str, Any]:
+    """Where an array is placed behind the numbers of those before; what is not of whole numbers in steps of its range.
 
-
-def _shrunk_list(part: list[Any], numbers: bytearray) -> Any:
-    if len(part) >= _MANY and all(item is None or isinstance(item, float) for item in part):
-        return _placed(np.array(part, dtype=np.float64), numbers)  # None becomes no number
-    return [_shrunk(item, numbers) for item in part]
-
-
-def _placed_array(part: dict[str, str], numbers: bytearray) -> dict[str, Any]:
-    array = np.frombuffer(base64.b64decode(part["bdata"]), dtype=f"<{part['dtype']}")
-    if part["dtype"] == "f4":
-        return _placed(array.astype(np.float64), numbers)
-    placed: dict[str, Any] = {"dtype": part["dtype"], "at": len(numbers), "count": len(array)}
-    numbers += array.tobytes()
-    return placed
-
-
-def _placed(values: NDArray[np.float64], numbers: bytearray) -> dict[str, Any]:
-    """Where values are placed among the numbers, in steps of their range."""
-    low, step, data = _quantised(values)
-    placed = {"dtype": "q2", "at": len(numbers), "count": len(values), "low": low, "step": step}
+    Raises
+    ------
+    TypeError
+        When it is no array, and nothing that JSON knows.
+    """
+    if not isinstance(array, np.ndarray):
+        raise TypeError(f"{type(array).__name__} is neither of JSON nor an array")
+    placed: dict[str, Any] = {"dtype": f"{array.dtype.kind}{array.itemsize}", "at": len(numbers), "count": len(array)}
+    if array.dtype.kind == "u":
+        numbers += array.tobytes()
+        return placed
+    low, step, data = _quantised(array.astype(np.float64))
     numbers += data
-    return placed
+    return {**placed, "dtype": "q2", "low": low, "step": step}
 
 
 def _quantised(values: NDArray[np.float64]) -> tuple[float, float, bytes]:
     """The least value, a step, and all values in steps from it: differences, low bytes, then high bytes."""
     known = np.isfinite(values)
-    low, high = (float(values[known].min()), float(values[known].max())) if known.any() else (0.0, 0.0)
+    kept = values if known.all() else values[known]
+    low, high = (float(kept.min()), float(kept.max())) if len(kept) else (0.0, 0.0)
     low, step = _short(low, (high - low) / _STEPS or 1.0)
     levels = np.full(len(values), _GAP, dtype=np.int64)
-    levels[known] = np.maximum(np.round((values[known] - low) / step), 0)
-    rest = (np.diff(levels, prepend=0) % 65_536).astype("<u2")
-    planes = rest.view(np.uint8).reshape(-1, 2).T
-    return low, step, planes.tobytes()
+    levels[known] = np.maximum(np.round((kept - low) / step), 0)
+    levels[1:] -= levels[:-1].copy()
+    return low, step, levels.astype("<u2").view(np.uint8).reshape(-1, 2).T.tobytes()
 
 
 def _short(low: float, step: float) -> tuple[float, float]:
     """The same with few digits, for those compress worst: a step that is no smaller, a least value where it may be."""
-    short_step, short_low = float(f"{_NO_SMALLER * step:.4g}"), float(f"{low:.{_DIGITS}g}")
+    short_step, short_low = float(f"{_NO_SMALLER * step:.4g}"), short(low)
     return (short_low if abs(short_low - low) < short_step / 4 else low), short_step

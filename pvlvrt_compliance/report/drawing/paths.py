@@ -1,18 +1,17 @@
-"""Curves and areas as short SVG paths: whole numbers, each from the point before, no more points than can be seen."""
+"""Curves and areas as what is inked of them on a canvas: strokes, and what is filled where a wave swings too fast."""
 
 from collections.abc import Iterator
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pvlvrt_compliance.evidence.outline import bends
-from pvlvrt_compliance.report.drawing.canvas import UNITS_A_PX, Array, Canvas
-from pvlvrt_compliance.report.drawing.model import Area, Bars, Line, Run
+from pvlvrt_compliance.report.drawing.canvas import Array, Canvas, floats
+from pvlvrt_compliance.report.drawing.ink import Ink, Way
+from pvlvrt_compliance.report.drawing.model import Area, Bars, Line
 
-_FINE = 1.2  # units: what a line may be off by
-_FAR = 1e6  # units: well outside of any frame
 _MEETING = 0.1  # units
 _CELL = 24.0  # units: a swing within is no longer seen as a curve
 _FINEST_CELL, _MORE_THAN_HALF = 3.0, 1.1  # of an outline: units, and of half a period
@@ -27,24 +26,34 @@ class Drawn(NamedTuple):
     edges: str = ""
 
 
-def line_paths(line: Line, canvas: Canvas) -> Drawn:
-    """The paths of a line."""
-    parts = [part for run in line.runs for x, y in _pieces(run, canvas) for part in _parted(x, y, canvas)]
-    return Drawn(*("".join(paths) for paths in zip(*parts, strict=True))) if parts else Drawn("", "")
+class Ways(NamedTuple):
+    """The same while it is inked."""
+
+    stroke: list[Way]
+    fill: list[Way]
+    edges: list[Way]
+
+    def drawn(self, ink: Ink) -> Drawn:
+        """As paths."""
+        return Drawn(*map(ink.path, self))
 
 
-def area_path(area: Area, canvas: Canvas) -> str:
-    """The path around all strips of an area."""
-    return "".join(path for edges in _meeting(area, canvas) for path in _strip_paths(*edges))
+def line_ways(line: Line, canvas: Canvas, ink: Ink) -> Ways:
+    """A line as it is inked."""
+    ways = Ways([], [], [])
+    for x, y in _pieces(line, canvas):
+        _part(x, y, canvas, ink, ways)
+    return ways
 
 
-def edges_path(area: Area, canvas: Canvas) -> str:
-    """The paths along both lines of all strips of an area, without its ends."""
-    return "".join(
-        _edges(*(edge[known] for edge in edges))
-        for edges in _meeting(area, canvas)
-        for known in _known(np.logical_and.reduce([np.isfinite(edge) for edge in edges]))
-    )
+def area_ways(area: Area, canvas: Canvas, ink: Ink, *, along_edges: bool) -> Ways:
+    """What lies around all strips of an area as it is inked, and, if wanted, both lines of them without their ends."""
+    ways = Ways([], [], [])
+    for x, lower, upper in _strips(area, canvas):
+        ways.fill.append(ink.outline(x, lower, upper))
+        if along_edges:
+            ways.edges.extend((ink.line(x, lower), ink.line(x, upper)))
+    return ways
 
 
 def bars_path(bars: Bars, canvas: Canvas) -> str:
@@ -57,50 +66,52 @@ def bars_path(bars: Bars, canvas: Canvas) -> str:
     return "".join(f"M{a:.0f} {zero:.0f}V{top:.0f}H{b:.0f}V{zero:.0f}z" for a, b, top in corners)
 
 
-def _pieces(run: Run, canvas: Canvas) -> Iterator[tuple[Array, Array]]:
-    """The points of a run between its gaps, in units."""
-    x, y = canvas.across(run.x), canvas.down(run.y)
-    for known in _known(np.isfinite(x) & np.isfinite(y)):
+def _pieces(line: Line, canvas: Canvas) -> Iterator[tuple[Array, Array]]:
+    """The points of a line between its gaps, in units."""
+    if not line.runs:
+        return
+    x = canvas.across(np.concatenate([floats(run.x) for run in line.runs]))
+    y = canvas.down(np.concatenate([floats(run.y) for run in line.runs]))
+    first = np.cumsum([0, *(len(run.y) for run in line.runs[:-1])])
+    for known in _known(np.isfinite(x) & np.isfinite(y), first):
         yield x[known], y[known]
 
 
-def _known(finite: NDArray[np.bool_]) -> Iterator[slice]:
-    if finite.all():
-        yield slice(0, len(finite))
+def _strips(area: Area, canvas: Canvas) -> Iterator[tuple[Array, Array, Array]]:
+    """Places, lower and upper line of strips between their gaps, in units, those that meet as one."""
+    if not area.strips:
         return
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], finite, [False])).astype(np.int8)))
-    yield from (slice(int(first), int(end)) for first, end in edges.reshape(-1, 2))
+    edges = [np.concatenate([floats(strip[k]) for strip in area.strips]) for k in range(3)]
+    x, lower, upper = canvas.across(edges[0]), canvas.down(edges[1]), canvas.down(edges[2])
+    first = np.cumsum([0, *(len(strip.lower) for strip in area.strips[:-1])])
+    meets = np.append(False, np.abs(x[first[1:]] - x[first[1:] - 1]) < _MEETING)
+    for known in _known(np.isfinite(x) & np.isfinite(lower) & np.isfinite(upper), first[~meets]):
+        yield x[known], lower[known], upper[known]
 
 
-def _meeting(area: Area, canvas: Canvas) -> Iterator[list[Array]]:
-    """Places, lower and upper line of strips, those that meet as one."""
-    last: list[Array] = []
-    for strip in area.strips:
-        edges = [canvas.across(strip.x), canvas.down(strip.lower), canvas.down(strip.upper)]
-        if last and abs(edges[0][0] - last[0][-1]) < _MEETING:
-            last = [np.append(before, after) for before, after in zip(last, edges, strict=True)]
-            continue
-        if last:
-            yield last
-        last = edges
-    if last:
-        yield last
+def _known(finite: NDArray[np.bool_], first: NDArray[np.int64]) -> Iterator[slice]:
+    """Stretches of points that are finite, parted before those that are first of something."""
+    if finite.all():
+        edges = [*dict.fromkeys(first.tolist()), len(finite)]
+        yield from (slice(begin, end) for begin, end in pairwise(edges) if begin < end)
+        return
+    parted = np.zeros(len(finite) + 1, dtype=np.bool_)
+    parted[first], parted[-1] = True, True
+    before = parted[:-1] | ~np.append(False, finite[:-1])
+    after = parted[1:] | ~np.append(finite[1:], False)
+    begins, ends = (np.flatnonzero(finite & edge).tolist() for edge in (before, after))
+    yield from (slice(begin, end + 1) for begin, end in zip(begins, ends, strict=True))
 
 
-def _strip_paths(x: Array, lower: Array, upper: Array) -> Iterator[str]:
-    for known in _known(np.isfinite(x) & np.isfinite(lower) & np.isfinite(upper)):
-        yield _outline(x[known], lower[known], upper[known])
-
-
-def _parted(x: Array, y: Array, canvas: Canvas) -> Iterator[Drawn]:
-    """Points as stroke, and as fill wherever they go up and down within a cell."""
+def _part(x: Array, y: Array, canvas: Canvas, ink: Ink, ways: Ways) -> None:
+    """Ink points as stroke, and as fill wherever they go up and down within a cell."""
     if len(x) <= canvas.width / _CELL or not x[0] < x[-1] or (np.diff(x) < 0).any():
-        yield Drawn(_stroke(x, y), "")
+        ways.stroke.append(ink.line(x, y))
         return
     begins = _cells(x, canvas)
     lows, highs = np.minimum.reduceat(y, begins), np.maximum.reduceat(y, begins)
-    ways = np.add.reduceat(np.abs(np.diff(y, prepend=y[:1])), begins)
-    swings = (ways > _SWINGS * (highs - lows)) & (highs - lows > _LEAST_SWING)
+    sizes = np.add.reduceat(np.abs(np.diff(y, prepend=y[:1])), begins)
+    swings = (sizes > _SWINGS * (highs - lows)) & (highs - lows > _LEAST_SWING)
     swings[1:-1] |= swings[:-2] & swings[2:]  # one cell between two others
     swings[1:-1] &= swings[:-2] | swings[2:]  # none on its own
     swings[-1] |= swings[-2:].any()  # a last one that is shorter
@@ -108,17 +119,25 @@ def _parted(x: Array, y: Array, canvas: Canvas) -> Iterator[Drawn]:
     for group in _alike(swings):
         first, end = int(begins[group.start]), int(ends[group.stop - 1])
         if not swings[group.start]:
-            yield Drawn(_stroke(x[first : end + 1], y[first : end + 1]), "")  # up to the first of the next
+            ways.stroke.append(ink.line(x[first : end + 1], y[first : end + 1]))  # up to the first of the next
             continue
         cuts = np.searchsorted(x[first : end + 1], canvas.instants) + first
         for begin, stop in pairwise(sorted({first, *(int(cut) for cut in cuts if first < cut < end), end})):
-            yield _swung_in(x[begin:stop], y[begin:stop])
+            _swing(x[begin:stop], y[begin:stop], ink, ways)
 
 
 def _cells(x: Array, canvas: Canvas) -> NDArray[np.int64]:
     """The first point of each cell: cells of one width, parted at instants, those without a point left out."""
-    edges = np.unique(np.concatenate([np.arange(0, canvas.width, _CELL), canvas.instants]))
-    return np.unique(np.searchsorted(x, edges[edges < x[-1]]))
+    edges = _cell_edges(canvas.width, canvas.instants)
+    begins = np.searchsorted(x, edges[edges < x[-1]])
+    found: NDArray[np.int64] = begins[np.append(True, np.diff(begins) > 0)]
+    return found
+
+
+@lru_cache(maxsize=8)
+def _cell_edges(width: float, instants: tuple[float, ...]) -> Array:
+    edges: Array = np.unique(np.concatenate([np.arange(0, width, _CELL), instants]))
+    return edges
 
 
 def _alike(flags: NDArray[np.bool_]) -> Iterator[slice]:
@@ -126,8 +145,8 @@ def _alike(flags: NDArray[np.bool_]) -> Iterator[slice]:
     yield from (slice(a, b) for a, b in pairwise(edges))
 
 
-def _swung_in(x: Array, y: Array) -> Drawn:
-    """The outline of what a wave swings in: at each place its highest and lowest values of about one period."""
+def _swing(x: Array, y: Array, ink: Ink, ways: Ways) -> None:
+    """Ink what a wave swings in: at each place its highest and lowest values of about one period."""
     turns = np.count_nonzero(np.diff(np.sign(np.diff(y))))
     half_period = (x[-1] - x[0]) / max(turns, 1)
     cell = min(max(_MORE_THAN_HALF * half_period, _FINEST_CELL), _CELL)
@@ -135,7 +154,8 @@ def _swung_in(x: Array, y: Array) -> Drawn:
     high = _joined(np.maximum.reduceat(y, begins), np.fmax)
     low = _joined(np.minimum.reduceat(y, begins), np.fmin)
     places = np.append(x[begins], x[-1])
-    return Drawn("", _outline(places, high, low), _edges(places, high, low))
+    ways.fill.append(ink.outline(places, high, low))
+    ways.edges.extend((ink.line(places, high), ink.line(places, low)))
 
 
 def _joined(levels: Array, further: Any) -> Array:
@@ -144,54 +164,3 @@ def _joined(levels: Array, further: Any) -> Array:
     if len(levels) > 1:
         joined[[0, -1]] = joined[[1, -2]]
     return joined
-
-
-def _stroke(x: Array, y: Array) -> str:
-    x, y = _seen(x, y)
-    if len(x) > 2 and (np.diff(x) >= 0).all():
-        kept = bends(_FINE, _rising(x), y)
-        x, y = x[kept], y[kept]
-    return _path(x, y)
-
-
-def _edges(x: Array, lower: Array, upper: Array) -> str:
-    return _stroke(x, lower) + _stroke(x, upper)
-
-
-def _outline(x: Array, lower: Array, upper: Array) -> str:
-    if len(x) > 2 and (np.diff(x) >= 0).all():
-        kept = bends(_FINE, _rising(x), lower, upper)
-        x, lower, upper = x[kept], lower[kept], upper[kept]
-    return _path(np.append(x, x[::-1]), np.append(lower, upper[::-1])) + "z"
-
-
-def _rising(x: Array) -> Array:
-    """Places that rise everywhere, where some are the same."""
-    return x + 1e-6 * np.arange(len(x))
-
-
-def _seen(x: Array, y: Array) -> tuple[Array, Array]:
-    """Of the points in one column of pixels the first, the highest, the lowest and the last."""
-    columns = np.floor(x / UNITS_A_PX)
-    begins = np.flatnonzero(np.diff(columns, prepend=np.nan) != 0)
-    if len(x) <= 2 * len(begins) or (np.diff(x) < 0).any():
-        return x, y
-    sizes = np.diff(np.append(begins, len(x)))
-    low, high = (np.repeat(edge.reduceat(y, begins), sizes) for edge in (np.minimum, np.maximum))
-    kept = (y == low) | (y == high)
-    kept[[0, -1]] = True
-    return x[kept], y[kept]
-
-
-def _path(x: Array, y: Array) -> str:
-    """Points as an absolute beginning and steps from there; those that go straight on are one."""
-    points = np.stack([x, y], axis=1).clip(-_FAR, _FAR).round().astype(np.int64)
-    steps = np.diff(points, axis=0)
-    steps = steps[(steps != 0).any(axis=1)]
-    if not len(steps):
-        return f"M{points[0, 0]} {points[0, 1]}h0"
-    turns = steps[1:, 0] * steps[:-1, 1] != steps[1:, 1] * steps[:-1, 0]
-    turns |= (steps[1:] * steps[:-1]).sum(axis=1) < 0  # straight back is a turn, too
-    steps = np.add.reduceat(steps, np.flatnonzero(np.append(True, turns)))
-    text = "l" + " ".join(f"{a} {b}" for a, b in steps.tolist())
-    return f"M{points[0, 0]} {points[0, 1]}{text.replace(' -', '-')}"

@@ -8,6 +8,7 @@ from pvlvrt_compliance.report.drawing.colours import BLACK, GREY, GRID, PAPER
 from pvlvrt_compliance.report.drawing.frame import BOTTOM_PX, LEFT_PX, RIGHT_PX, ROW_PX, Frame, frame_of
 from pvlvrt_compliance.report.drawing.model import Area, Bars, Drawing, Line, Mark, Panel, Shade
 from pvlvrt_compliance.report.drawing.names import curve_name
+from pvlvrt_compliance.report.drawing.packing import short
 from pvlvrt_compliance.report.drawing.plotly_traces import (
     area_trace,
     bar_trace,
@@ -39,8 +40,8 @@ def render(panel: Panel, drawing: Drawing, texts: Texts) -> Figure:
     Returns
     -------
     dict
-        ``{"data": [...], "layout": {...}}``, ready for JSON. A trace of samples has ``packed`` in place of ``x`` and
-        ``y``: see `plotly_traces`; `figures.js` unpacks it.
+        ``{"data": [...], "layout": {...}}``, ready for `packing.packed`: many numbers are arrays. A trace of samples
+        has ``packed`` in place of ``x`` and ``y``: see `plotly_traces`; `figures.js` unpacks it.
     """
     marks, shades = (drawing.marks, drawing.shades) if panel.over == "time" else ((), ())
     frame = frame_of(panel, drawing, texts)
@@ -50,7 +51,7 @@ def render(panel: Panel, drawing: Drawing, texts: Texts) -> Figure:
         "margin": {"l": LEFT_PX, "r": RIGHT_PX, "t": frame.top, "b": frame.height - frame.floor},
         "xaxis": _x_axis(panel, texts),
         "yaxis": _y_axis(panel, texts),
-        "legend": {**_LEGEND, "y": -BOTTOM_PX / (frame.floor - frame.top)},
+        "legend": {**_LEGEND, "y": short(-BOTTOM_PX / (frame.floor - frame.top))},
         "shapes": [*map(_shade, shades), *(_vertical(mark) for mark in marks if mark.dash)],
         "annotations": [
             *(_words(mark, frame, texts) for mark in marks if mark.words),
@@ -93,7 +94,7 @@ _AXIS: Mapping[str, Any] = {
 
 
 def _x_axis(panel: Panel, texts: Texts) -> Figure:
-    span = {} if panel.x.span is None else {"range": list(panel.x.span)}
+    span = {} if panel.x.span is None else {"range": [short(at) for at in panel.x.span]}
     title = {"text": texts.named("axis", panel.x.label), "standoff": 6}
     of_time = {"hoverformat": ".4f", "zeroline": False} if panel.over == "time" else {}
     square = {"constrain": "domain"} if panel.equal else {}
@@ -101,7 +102,7 @@ def _x_axis(panel: Panel, texts: Texts) -> Figure:
 
 
 def _y_axis(panel: Panel, texts: Texts) -> Figure:
-    span = {} if panel.y.span is None else {"range": list(panel.y.span)}
+    span = {} if panel.y.span is None else {"range": [short(at) for at in panel.y.span]}
     equal = {"scaleanchor": "x", "scaleratio": 1, "constrain": "domain"} if panel.equal else {}
     return {
         **_AXIS,
@@ -132,8 +133,8 @@ def _shade(shade: Shade) -> Figure:
         "layer": "below",
         "xref": "x",
         "yref": "paper",
-        "x0": shade.begin_s,
-        "x1": shade.end_s,
+        "x0": short(shade.begin_s),
+        "x1": short(shade.end_s),
         "y0": 0,
         "y1": 1,
         "line": {"width": 0},
@@ -146,8 +147,8 @@ def _vertical(mark: Mark) -> Figure:
         "type": "line",
         "xref": "x",
         "yref": "paper",
-        "x0": mark.at_s,
-        "x1": mark.at_s,
+        "x0": short(mark.at_s),
+        "x1": short(mark.at_s),
         "y0": 0,
         "y1": 1,
         "line": {"color": mark.colour, "width": 1, "dash": mark.dash},
@@ -157,7 +158,7 @@ def _vertical(mark: Mark) -> Figure:
 def _words(mark: Mark, frame: Frame, texts: Texts) -> Figure:
     return {
         "text": literal(mark.words.said(texts)) if mark.words else "",
-        "x": mark.at_s,
+        "x": short(mark.at_s),
         "xref": "x",
         "xanchor": mark.anchor,
         "y": 1,
@@ -182,8 +183,8 @@ def _pointed(panel: Panel, drawing: Drawing, frame: Frame, texts: Texts) -> Iter
         yield {
             "text": literal(texts("mark.broken", check=text) if spot.is_broken else text),
             "bgcolor": translucent(PAPER, _HALO),
-            "x": spot.x,
-            "y": spot.y,
+            "x": short(spot.x),
+            "y": short(spot.y),
             "showarrow": True,
             "arrowhead": 6,  # a dot
             "arrowcolor": spot.colour,

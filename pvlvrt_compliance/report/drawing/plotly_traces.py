@@ -1,6 +1,5 @@
 """Lines and areas as traces of plotly.js; where their numbers are packed, once `figures.js` has unpacked them."""
 
-import base64
 import math
 import re
 from collections.abc import Sequence
@@ -11,12 +10,14 @@ from numpy.typing import NDArray
 
 from pvlvrt_compliance.report.drawing.colours import EDGES_PX
 from pvlvrt_compliance.report.drawing.model import Area, Bars, Line, OnGrid, Places, values
+from pvlvrt_compliance.report.drawing.packing import short
 
 Trace = dict[str, Any]
 
 _ESCAPED_MARKUP = re.compile("&lt;(/?su[bp])>")
 _EDGE_PX = 1.0
 _SAME_SAMPLE = 1e-3  # of a step
+_MANY = 12  # values of a list that is an array
 
 
 def line_trace(line: Line, *, packed: bool = True) -> Trace:
@@ -38,7 +39,8 @@ def line_trace(line: Line, *, packed: bool = True) -> Trace:
 def area_trace(area: Area, *, packed: bool = True) -> Trace:
     """An area as a trace: one for all of its strips.
 
-    Samples are ``packed`` for `figures.js`, or stand as ``x`` and ``y`` that plotly.js needs nothing more for.
+    Samples are ``packed`` for `figures.js`, arrays as `packing.packed` takes them, or stand as ``x`` and ``y`` that
+    plotly.js needs nothing more for.
     """
     return {
         "name": area.name,
@@ -57,9 +59,9 @@ def bar_trace(bars: Bars) -> Trace:
     return {
         "type": "bar",
         "name": bars.name,
-        "x": list(bars.at),
-        "y": [height if math.isfinite(height) else None for height in bars.heights],
-        "width": bars.width,
+        "x": _listed(bars.at),
+        "y": _listed([height if math.isfinite(height) else None for height in bars.heights]),
+        "width": short(bars.width),
         "marker": {"color": bars.colour, "opacity": bars.opacity},
         "showlegend": bars.in_legend,
         "hovertemplate": "%{y:.4~g}",
@@ -92,7 +94,15 @@ def _points(pieces: Sequence[tuple[Places, tuple[Any, ...]]], packed: bool) -> T
         there = values(places)
         x += [*([None] if x else []), *there, *(reversed(there) if len(edges) == 2 else [])]
         y += [*([None] if y else []), *edges[0], *(reversed(edges[1]) if len(edges) == 2 else [])]
-    return {"x": x, "y": [None if level is None or not math.isfinite(level) else level for level in y]}
+    y = [None if level is None or not math.isfinite(level) else level for level in y]
+    return {"x": _listed(x), "y": _listed(y)} if packed else {"x": x, "y": y}
+
+
+def _listed(values: Sequence[float | None]) -> list[float | None] | NDArray[np.float64]:
+    """A few values as they stand in JSON, many as an array, where None becomes no number."""
+    if len(values) >= _MANY:
+        return np.array(values, dtype=np.float64)
+    return [None if value is None else short(value) for value in values]
 
 
 def _packed(pieces: Sequence[tuple[Any, tuple[Any, ...]]]) -> Trace:
@@ -104,33 +114,31 @@ def _packed(pieces: Sequence[tuple[Any, tuple[Any, ...]]]) -> Trace:
     """
     grids = [x for x, _ in pieces]
     ends = [math.nan, *(x.first + x.step * int(x.numbers[-1]) for x in grids)]
-    skips = [np.diff(x.numbers, prepend=x.numbers[:1]) for x, _ in pieces]
+    skips = np.diff(np.concatenate([x.numbers for x in grids]), prepend=0)
+    skips[np.cumsum([0, *(len(x.numbers) for x in grids[:-1])])] = 0
     names = ("y",) if len(pieces[0][1]) == 1 else ("lower", "upper")
     return {
         "pieces": [_piece(x, end) for x, end in zip(grids, ends, strict=False)],
-        "skip": _whole_numbers(np.concatenate(skips)),
-        **{name: typed_array(np.concatenate([edges[k] for _, edges in pieces])) for k, name in enumerate(names)},
+        "skip": _whole_numbers(skips),
+        **{name: single(np.concatenate([edges[k] for _, edges in pieces])) for k, name in enumerate(names)},
     }
 
 
 def _piece(x: OnGrid, last: float) -> list[float]:
     """One piece of what is packed, after another that ends at a place."""
     first = x.first + x.step * int(x.numbers[0])
-    return [first, x.step, len(x.numbers), int(abs(first - last) < _SAME_SAMPLE * x.step)]
+    return [short(first), short(x.step), len(x.numbers), int(abs(first - last) < _SAME_SAMPLE * x.step)]
 
 
-def _whole_numbers(x: NDArray[np.int64]) -> Trace:
-    kind = next(kind for kind in ("u1", "u2", "u4") if x.max(initial=0) <= np.iinfo(kind).max)
-    return _array(x.astype(f"<{kind}"), kind)
+def _whole_numbers(x: NDArray[np.int64]) -> NDArray[Any]:
+    """Whole numbers in as few bytes each as the largest needs."""
+    largest = x.max(initial=0)
+    return x.astype(next(f"<{kind}" for kind in ("u1", "u2", "u4") if largest <= np.iinfo(kind).max))
 
 
-def typed_array(y: NDArray[np.float64]) -> Trace:
-    """Encode as a base64 float32 array; values beyond float32 become gaps."""
+def single(y: NDArray[np.float64]) -> NDArray[np.float32]:
+    """Values as float32; those beyond it become gaps."""
     with np.errstate(over="ignore"):
-        single = y.astype("<f4")
-    single[~np.isfinite(single)] = np.nan
-    return _array(single, "f4")
-
-
-def _array(x: NDArray[Any], kind: str) -> Trace:
-    return {"dtype": kind, "bdata": base64.b64encode(x.tobytes()).decode("ascii")}
+        found = y.astype("<f4")
+    found[~np.isfinite(found)] = np.nan
+    return found

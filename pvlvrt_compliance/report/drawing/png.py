@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from pvlvrt_compliance.errors import UsageError
-from pvlvrt_compliance.report.drawing.model import STROKES_PX, Area, Line, Panel, outlines, plain, span_of, values
+from pvlvrt_compliance.report.drawing.model import STROKES_PX, Area, Line, Panel, outlines, plain, values
+from pvlvrt_compliance.report.drawing.spans import span_of
 from pvlvrt_compliance.report.drawing.svg import LETTERS_A_LINE
 
 SUFFIX = ".png"

@@ -1,7 +1,7 @@
 """A panel of a test as a compact static SVG: what is seen without JavaScript, on paper and in a PDF."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from html import escape
 from typing import Literal
 
@@ -19,6 +19,7 @@ from pvlvrt_compliance.report.drawing.frame import (
     Frame,
     frame_of,
 )
+from pvlvrt_compliance.report.drawing.ink import Ink
 from pvlvrt_compliance.report.drawing.model import (
     STROKES_PX,
     Area,
@@ -32,7 +33,7 @@ from pvlvrt_compliance.report.drawing.model import (
     plain,
 )
 from pvlvrt_compliance.report.drawing.names import curve_name
-from pvlvrt_compliance.report.drawing.paths import area_path, bars_path, edges_path, line_paths
+from pvlvrt_compliance.report.drawing.paths import area_ways, bars_path, line_ways
 from pvlvrt_compliance.report.drawing.spots import placed
 from pvlvrt_compliance.report.drawing.ticks import share, ticks
 from pvlvrt_compliance.report.language import Texts
@@ -60,17 +61,31 @@ def figure(panel: Panel, drawing: Drawing, texts: Texts, theme: Theme = "page") 
         Colours as variables of a page (`colours.style`) that is light or dark, or plain ones for a light ground, with a
         font of its own and a description; one with equal axes is narrow.
     """
-    return _Still(panel, drawing, texts, theme).picture()
+    return figures([panel], drawing, texts, theme)[0]
+
+
+def figures(panels: Sequence[Panel], drawing: Drawing, texts: Texts, theme: Theme = "page") -> list[str]:
+    """Several panels of a drawing, each as of `figure`, at little more than the cost of one."""
+    ink = Ink()
+    stills = [_Still(panel, drawing, texts, theme, ink) for panel in panels]
+    return [still.picture() for still in stills]
 
 
 class _Still:
     """One panel in one frame."""
 
-    def __init__(self, panel: Panel, drawing: Drawing, texts: Texts, theme: Theme) -> None:
+    def __init__(self, panel: Panel, drawing: Drawing, texts: Texts, theme: Theme, ink: Ink) -> None:
         self.panel, self.texts, self.is_plain = panel, texts, theme == "plain"
         self.marks, self.shades = (drawing.marks, drawing.shades) if panel.over == "time" else ((), ())
         self.frame: Frame = frame_of(panel, drawing, texts, narrow=self.is_plain and panel.equal)
         self.canvas = canvas_of(panel, drawing, self.frame)
+        self.ink = ink  # of all panels: a path is asked for when all of them are inked
+        drawn_elsewhere = {line.group for line in panel.lines}
+        self.inked_lines = [line_ways(line, self.canvas, ink) for line in panel.lines]
+        self.inked_areas = [
+            area_ways(area, self.canvas, ink, along_edges=area.edged and area.group in drawn_elsewhere)
+            for area in panel.areas
+        ]
 
     def picture(self) -> str:
         """The whole of it."""
@@ -137,13 +152,12 @@ class _Still:
             yield f'<path d="{path}" fill="{self._paint(colour)}" fill-opacity="{opacity:g}"/>'
 
     def _areas(self) -> Iterator[str]:
-        lines = {line.group for line in self.panel.lines}
-        for area in self.panel.areas:
-            if path := area_path(area, self.canvas):
-                if area.group in lines and area.edged:  # a line elsewhere
-                    yield self._swinging(path, edges_path(area, self.canvas), area.colour)
-                else:
-                    yield f'<path d="{path}"{self._filled(area)}/>'
+        for area, ways in zip(self.panel.areas, self.inked_areas, strict=True):
+            drawn = ways.drawn(self.ink)
+            if drawn.edges:
+                yield self._swinging(drawn.fill, drawn.edges, area.colour)
+            elif drawn.fill:
+                yield f'<path d="{drawn.fill}"{self._filled(area)}/>'
 
     def _bars(self) -> Iterator[str]:
         for bars in self.panel.bars:
@@ -151,8 +165,8 @@ class _Still:
             yield f'<path d="{bars_path(bars, self.canvas)}"{look}/>'
 
     def _lines(self) -> Iterator[str]:
-        for line in self.panel.lines:
-            drawn = line_paths(line, self.canvas)
+        for line, ways in zip(self.panel.lines, self.inked_lines, strict=True):
+            drawn = ways.drawn(self.ink)
             if drawn.fill:
                 yield self._swinging(drawn.fill, drawn.edges, line.colour)
             if drawn.stroke:

@@ -17,13 +17,13 @@ from pvlvrt_compliance.report.drawing.model import (
     broken_lines,
     outlines,
     plain,
-    span_of,
 )
-from pvlvrt_compliance.report.drawing.still import figure
+from pvlvrt_compliance.report.drawing.spans import span_of
+from pvlvrt_compliance.report.drawing.still import figure, figures
 from pvlvrt_compliance.report.drawing.ticks import share, ticks
 from pvlvrt_compliance.resources import resource_folder
 
-__all__ = ["SUFFIX", "figure", "render"]
+__all__ = ["SUFFIX", "figure", "figures", "render"]
 
 SUFFIX = ".svg"
 WIDTH, PANEL_HEIGHT, LEFT, RIGHT, TOP, BOTTOM, LEGEND_ROW = 760, 330, 66, 20, 34, 50, 17
@@ -40,16 +40,14 @@ def render(name: str, title: str, panels: Sequence[Panel]) -> str:
         What they are of: short, and in words.
     panels : sequence of Panel
     """
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+    from pvlvrt_compliance.report.templates import environment
 
-    loader = FileSystemLoader(resource_folder("reports"))
-    environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     heading = textwrap.wrap(title, LETTERS_A_LINE)
     drawn, top = [], _HEAD + _HEAD_ROW * len(heading)
     for panel in panels:
         drawn.append(_Drawing(panel, top))
         top = drawn[-1].bottom
-    template = environment.get_template("panels.svg.j2")
+    template = environment(resource_folder("reports"), __file__).get_template("panels.svg.j2")
     return template.render(name=name, title=title, heading=heading, drawings=drawn, width=WIDTH, height=top)
 
 

@@ -7,6 +7,7 @@ a module of, too, is no part of it. Besides, a module may have
 - `needs()`, which says what is lacking (`UsageError`), before anything is run;
 - `TAKES_A_WHILE = True`: whoever waits is told that it is written;
 - `OF_WHOLE_RUNS = True`: a run that was interrupted does not wait for it, all others are written of its finished tests;
+- `SHOWS`: the form in which it takes drawings, of `of_record.FORMS`; one that shows none is without it;
 - `console(results)`: lines for standard output, which the command prints behind its own, where a program reads them;
   nothing where none does;
 - `APPENDED_TO`: the environment variable with the name of a file that a CI service shows; the command appends the same
@@ -16,21 +17,20 @@ a module of, too, is no part of it. Besides, a module may have
 import pkgutil
 from collections.abc import Callable, Collection, Mapping
 from importlib import import_module
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from pvlvrt_compliance.errors import UsageError, did_you_mean
 
 if TYPE_CHECKING:  # help lists the names: it loads nothing that a format is made with
-    from pvlvrt_compliance.report.drawing.model import Drawing
     from pvlvrt_compliance.results import Results
 
 _PREFIX = "results_"
 
 
 class Render(Protocol):
-    """What makes a file from the results and from drawings by the key of their test."""
+    """What makes a file from the results and from drawings, in the form that it `SHOWS`, by the key of their test."""
 
-    def __call__(self, results: "Results", drawings: "Mapping[str, Drawing]", /) -> str | bytes:
+    def __call__(self, results: "Results", drawings: "Mapping[str, Any]", /) -> str | bytes:
         """The content of the file."""
 
 
@@ -43,6 +43,7 @@ class Format(NamedTuple):
     asked_for: bool
     takes_a_while: bool
     of_whole_runs: bool
+    shows: str
     needs: Callable[[], None]
     console: "Callable[[Results], str]"
     appended_to: str
@@ -77,6 +78,11 @@ def chosen_formats(asked: Collection[str], spelled: str = "--format") -> tuple[F
     return chosen
 
 
+def of_made(found: Format, results: "Results", made: "Mapping[str, Mapping[str, Any]]") -> str | bytes:
+    """The content of a file, of what has been made of every record for all formats (`of_record.made`)."""
+    return found.render(results, {key: forms[found.shows] for key, forms in made.items() if found.shows in forms})
+
+
 def _modules() -> list[str]:
     return [module.name for module in pkgutil.iter_modules(__path__)]
 
@@ -94,6 +100,7 @@ def _format(name: str) -> Format:
         asked_for=getattr(module, "ASKED_FOR", False),
         takes_a_while=getattr(module, "TAKES_A_WHILE", False),
         of_whole_runs=getattr(module, "OF_WHOLE_RUNS", False),
+        shows=getattr(module, "SHOWS", ""),
         needs=getattr(module, "needs", _nothing),
         console=getattr(module, "console", _nothing_said),
         appended_to=getattr(module, "APPENDED_TO", ""),

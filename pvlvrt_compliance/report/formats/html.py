@@ -7,10 +7,10 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment
 from markupsafe import Markup
 
-from pvlvrt_compliance.report import cursor_table, measurement_table
+from pvlvrt_compliance.report import cursor_table, measurement_table, templates
 from pvlvrt_compliance.report import format as spell
 from pvlvrt_compliance.report.document.baseline import against_baseline, said_of
 from pvlvrt_compliance.report.document.coverage import coverage
@@ -18,9 +18,10 @@ from pvlvrt_compliance.report.document.front import Front, front, margin_in_word
 from pvlvrt_compliance.report.document.matrix import matrices
 from pvlvrt_compliance.report.document.scenario import imposed_rows, scenario_words
 from pvlvrt_compliance.report.drawing import colours
-from pvlvrt_compliance.report.drawing.in_page import figures_of, plotly_packed
+from pvlvrt_compliance.report.drawing.in_page import Figures, figures_of, styled
 from pvlvrt_compliance.report.drawing.looks import Looks
 from pvlvrt_compliance.report.drawing.model import Drawing
+from pvlvrt_compliance.report.drawing.plotly_js import plotly_packed
 from pvlvrt_compliance.report.language import BASE, Texts
 from pvlvrt_compliance.report.provenance import provenance_groups
 from pvlvrt_compliance.report.verdicts import findings, is_verified, may_decide, name_of, verdicts
@@ -30,6 +31,7 @@ from pvlvrt_compliance.results.files import REPORT
 
 FILE = REPORT
 OF_WHOLE_RUNS = True
+SHOWS = "page"
 
 _WORST = 5  # margins that the first page shows at once; the others are folded below them
 
@@ -51,14 +53,14 @@ class _Way(NamedTuple):
     after: int
 
 
-def render(results: Results, drawings: Mapping[str, Drawing]) -> str:
+def render(results: Results, drawings: Mapping[str, Drawing | Figures]) -> str:
     """Return the report as one HTML document, in the language of ``results.report``.
 
     Parameters
     ----------
     results : Results
     drawings : mapping
-        Drawings of tests, by their key; a test without one says so.
+        Drawings of tests, or what has been made of them for a page, by their key; a test without one says so.
 
     Raises
     ------
@@ -71,7 +73,7 @@ def render(results: Results, drawings: Mapping[str, Drawing]) -> str:
     texts = Texts(results.report.language)
     used = {test.key: drawings[test.key] for test in results.tests if test.key in drawings}
     looks = Looks()
-    figures = {name: figures_of(drawing, texts, looks) for name, drawing in used.items()}
+    figures = {name: styled(_figures(drawn, texts), looks) for name, drawn in used.items()}
     return (
         environment(folder, texts.language)
         .get_template("report.html.j2")
@@ -85,6 +87,10 @@ def render(results: Results, drawings: Mapping[str, Drawing]) -> str:
             figures_js=read(folder, "figures.js"),
         )
     )
+
+
+def _figures(drawn: Drawing | Figures, texts: Texts) -> Figures:
+    return drawn if isinstance(drawn, Figures) else figures_of(drawn, texts)
 
 
 def read(folder: Path, *names: str) -> Markup:
@@ -159,13 +165,7 @@ def _ways(failed: Sequence[int]) -> dict[int, _Way]:
 def environment(folder: Path, language: str) -> Environment:
     """Templates with what all of them call, compiled once a language."""
     texts = Texts(language)
-    made = Environment(
-        loader=FileSystemLoader(folder),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    made = templates.environment(folder, __file__, lstrip_blocks=True)
     made.filters.update(css_string=_css_string, lean=_lean)
     made.globals.update(
         texts=texts,

@@ -4,8 +4,6 @@ from collections.abc import Mapping
 
 from pvlvrt_compliance.report.drawing.model import Drawing
 from pvlvrt_compliance.report.language import Texts
-from pvlvrt_compliance.report.pdf.compiling import check_installed, compiled
-from pvlvrt_compliance.report.pdf.document import document
 from pvlvrt_compliance.results import Results
 from pvlvrt_compliance.results.files import REPORT_PDF
 
@@ -13,6 +11,7 @@ FILE = REPORT_PDF
 ASKED_FOR = True
 TAKES_A_WHILE = True
 OF_WHOLE_RUNS = True
+SHOWS = "drawing"
 
 
 def needs() -> None:
@@ -23,6 +22,8 @@ def needs() -> None:
     UsageError
         When it is not; names the extra.
     """
+    from pvlvrt_compliance.report.pdf.compiling import check_installed
+
     check_installed()
 
 
@@ -45,4 +46,7 @@ def render(results: Results, drawings: Mapping[str, Drawing]) -> bytes:
     PvlvrtError
         When the templates are missing from the installation.
     """
+    from pvlvrt_compliance.report.pdf.compiling import compiled  # a run without it loads none of this
+    from pvlvrt_compliance.report.pdf.document import document
+
     return compiled(document(results, drawings, Texts(results.report.language)))

@@ -21,8 +21,9 @@ def pictures(drawing: Drawing | None, texts: Texts) -> Iterator[Block]:
         yield Paragraph(texts("section.no_figure"), small=True)
         return
     line: list[Picture] = []
-    for panel in drawing.panels:
-        picture = _picture(panel, drawing, texts)
+    drawn = svg.figures(drawing.panels, drawing, texts, theme="plain")
+    for panel, picture_of in zip(drawing.panels, drawn, strict=True):
+        picture = _picture(panel, picture_of, texts)
         if line and sum(other.width for other in line) + picture.width > 1:
             yield _on_a_line(line)
             line = []
@@ -31,11 +32,10 @@ def pictures(drawing: Drawing | None, texts: Texts) -> Iterator[Block]:
         yield _on_a_line(line)
 
 
-def _picture(panel: Panel, drawing: Drawing, texts: Texts) -> Picture:
+def _picture(panel: Panel, drawn: str, texts: Texts) -> Picture:
     title = texts(f"figure.{panel.key}.title") if panel.key else plain(panel.title)
     says = panel.says.said(texts) if panel.says else ""
     words = texts("pdf.figure", title=title, says=says) if says else title
-    drawn = svg.figure(panel, drawing, texts, theme="plain")
     return Picture(drawn, words, words, width=_share(drawn))
 
 

@@ -4,10 +4,7 @@ import ctypes
 from collections.abc import Callable
 from typing import Any
 
-import numba
-from llvmlite import ir  # type: ignore[import-untyped]
-from numba import types
-from numba.extending import intrinsic
+from pvlvrt_compliance.kernel import instructions
 
 FUNCTION = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p)
 """What is at the address: ``int32_t function(void *argument)``, 0 when all is well."""
@@ -35,9 +32,11 @@ def guarded(do: Callable[[], None], tell: Callable[[str], None]) -> Callable[[An
     return call
 
 
-@intrinsic
 def _call_compiled(typing_context: Any, address: Any, argument: Any) -> Any:
     """Address and argument are plain integers at run time, so that compiled code is the same for every library."""
+    from llvmlite import ir  # type: ignore[import-untyped]
+    from numba import types
+
     del typing_context, address, argument
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -53,6 +52,5 @@ def _call_interpreted(address: int, argument: int) -> int:
     return int(FUNCTION(address)(argument))
 
 
-_config: Any = numba.config
-call_address: Any = _call_interpreted if _config.DISABLE_JIT else _call_compiled
+call_address: Any = instructions(_call_compiled, _call_interpreted)
 """``call_address(address, argument) -> int32``, for compiled code (for Python, where compilation is turned off)."""

@@ -179,5 +179,6 @@ def test_what_is_drawn_is_what_was_judged(distorted):
     nearest = min(
         (bar for spectrum in result.spectra for bar in spectrum.bars), key=lambda bar: 1 - bar.measured / bar.limit
     )
-    assert (check.measured, check.limit) == (nearest.measured, nearest.limit)
+    assert check.measured == pytest.approx(nearest.measured, rel=1e-9)  # both windows have it: the first is reported
+    assert check.limit == nearest.limit
     assert check.at_s in {spectrum.start_s for spectrum in result.spectra}

@@ -61,6 +61,12 @@ def small(tmp_path_factory):
     return small
 
 
+@pytest.mark.parametrize("version", [2, 3])
+def test_an_fmu_brings_what_it_is_made_of(small, version):
+    """Its binary takes nothing from elsewhere, so that its file alone decides what it does."""
+    assert FmuDoor(str(small(version)), {}).besides() == ""
+
+
 def without_binary(folder, text, place="nowhere"):
     """FMU whose binary, if it has a place, is an empty file."""
     binary = folder / f"small{fmpy.sharedLibraryExtension}"

@@ -100,3 +100,41 @@ def test_example_on_the_page_is_a_mapping_file(tmp_path):
     assert map_outputs([port("ma"), port("Ea"), port("Pout", "W")], load_mapping(file), NOMINAL).recorded == (
         "p_out_w",
     )
+
+
+def test_files_that_a_mapping_lists(tmp_path):
+    """By names and patterns, from its folder on; each once, in the order of their names."""
+    (tmp_path / "lib" / "inner").mkdir(parents=True)
+    for name in ("gains.csv", "lib/b.py", "lib/a.py", "lib/inner/c.py"):
+        (tmp_path / name).write_text("")
+    file = tmp_path / "my.mapping.toml"
+    file.write_text('files = ["lib/*.py", "gains.csv", "lib/a.py", "lib/**/*.py"]\n')
+    found = [path.relative_to(tmp_path).as_posix() for path in load_mapping(file).listed]
+    assert found == ["gains.csv", "lib/a.py", "lib/b.py", "lib/inner/c.py"]
+
+
+@pytest.mark.parametrize(
+    ("files", "words"),
+    [
+        (
+            '["gains.csv",\n"gain.csv"]',
+            "my.mapping.toml:2: files[1]: there is no file gain.csv in the folder of the mapping",
+        ),
+        ('["lib/*.py"]', "my.mapping.toml:1: files[0]: there is no file lib/*.py"),
+        (
+            '["../other.csv"]',
+            "files[0]: '../other.csv' must be the name of a file in the folder of the mapping, or a pattern",
+        ),
+        ('["/etc/passwd"]', "files[0]: '/etc/passwd' must be the name of a file in the folder"),
+        ('[""]', "files[0]: '' must be the name of a file"),
+        ('["link.csv"]', "files[0]: link.csv is a link to a file outside of the folder of the mapping"),
+        ('"gains.csv"', "my.mapping.toml:1: files: must be a list"),
+    ],
+)
+def test_files_that_cannot_be_listed(tmp_path, files, words):
+    """Those that are not there, and those outside of the folder, which a digest would have to open."""
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "gains.csv").write_text("")
+    (tmp_path / "other.csv").write_text("")
+    (tmp_path / "mine" / "link.csv").symlink_to(tmp_path / "other.csv")
+    assert words in refused(tmp_path / "mine", f"files = {files}\n")

@@ -1,12 +1,19 @@
 """A class in Python as a controller: what it must have, what it can be given, what is said of its mistakes."""
 
+import shutil
+from pathlib import Path
+
 import pytest
 
+from pvlvrt_compliance.controllers.door import DoorError
+from pvlvrt_compliance.controllers.python.door import PythonDoor
 from pvlvrt_compliance.controllers.simulator import ForeignSimulator
 from pvlvrt_compliance.errors import SimulationError, UsageError
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.parameters import parameters_from
+
+SMALL = Path(__file__).parents[1] / "small.py"
 
 SCENARIO = Scenario(sag=Sag(depth=0.0), duration_s=0.1, after_s=0.1)
 QUICK = parameters_from(("simulation.settling_s=0.2",))
@@ -99,3 +106,18 @@ def test_names_of_signals_that_cannot_be_recorded(tmp_path, names, words):
     with pytest.raises(SimulationError) as error:
         ForeignSimulator(f"{tmp_path / 'c.py'}:C")(SCENARIO, QUICK)
     assert words in str(error.value)
+
+
+def test_a_mapping_can_only_list_files(tmp_path):
+    """One that lies beside the class and ties ports is of something else of its name, and not used."""
+    shutil.copy(SMALL, tmp_path / "mine.py")
+    mapping = tmp_path / "mine.mapping.toml"
+    door = PythonDoor(f"{tmp_path / 'mine.py'}:Small", {})
+    assert door.describe().mapping is None
+    mapping.write_text("[inputs]\nVdc = 'v_dc_v'\n")
+    assert PythonDoor(f"{tmp_path / 'mine.py'}:Small", {}).describe().mapping is None
+    with pytest.raises(DoorError, match="--mapping does not go with it, but for one that only lists files"):
+        PythonDoor(f"{tmp_path / 'mine.py'}:Small", {}, str(mapping))
+    mapping.write_text("files = ['mine.py']\n")
+    assert PythonDoor(f"{tmp_path / 'mine.py'}:Small", {}).describe().mapping == str(mapping)
+    assert PythonDoor(f"{tmp_path / 'mine.py'}:Small", {}, str(mapping)).describe().mapping == str(mapping)

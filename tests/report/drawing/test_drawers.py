@@ -24,10 +24,10 @@ from pvlvrt_compliance.report.drawing.model import (
     broken_lines,
     outlines,
     plain,
-    span_of,
     values,
 )
 from pvlvrt_compliance.report.drawing.of_profile import panels
+from pvlvrt_compliance.report.drawing.spans import span_of
 
 SVG = "{http://www.w3.org/2000/svg}"
 NAN = math.nan

@@ -5,8 +5,8 @@ import pytest
 
 from pvlvrt_compliance.disturbance.asked import disturbance_asked
 from pvlvrt_compliance.disturbance.model import NormalVoltage
-from pvlvrt_compliance.report.drawing.model import span_of
 from pvlvrt_compliance.report.drawing.orbits import array_path, hodograph, sketched_path
+from pvlvrt_compliance.report.drawing.spans import span_of
 from pvlvrt_compliance.results import Band
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario

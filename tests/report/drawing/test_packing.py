@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from pvlvrt_compliance.report.drawing.packing import packed
-from pvlvrt_compliance.report.drawing.plotly_traces import typed_array
+from pvlvrt_compliance.report.drawing.plotly_traces import single
 
 
 def opened(text):
@@ -32,7 +32,7 @@ def test_values_come_out_within_a_step(scale):
     draw = np.random.default_rng(3)
     given = np.float32(scale * draw.normal(size=500)).astype(float)
     given[[0, 17, 499]] = np.nan
-    (array,), numbers = opened(packed([typed_array(given)]))
+    (array,), numbers = opened(packed([single(given)]))
     assert array["dtype"] == "q2"
     np.testing.assert_allclose(
         values(array, numbers), given, rtol=0, atol=0.51 * np.nanmax(given - np.nanmin(given)) / 16_382
@@ -40,10 +40,25 @@ def test_values_come_out_within_a_step(scale):
 
 
 def test_what_does_not_move_comes_out_exactly():
-    """A constant, and a list of nothing but gaps, have no range to divide by."""
-    (constant, gaps), numbers = opened(packed([[7.25] * 20, [None] * 20]))
+    """A constant, and an array of nothing but gaps, have no range to divide by."""
+    (constant, gaps), numbers = opened(packed([np.full(20, 7.25), np.full(20, np.nan)]))
     assert set(values(constant, numbers)) == {7.25}
     assert np.isnan(values(gaps, numbers)).all()
+
+
+@pytest.mark.parametrize("kind", ["<u1", "<u2", "<u4"])
+def test_whole_numbers_come_out_exactly(kind):
+    """Whole numbers stand as they are, behind one another, however many bytes each of them has."""
+    given = np.array([0, 1, np.iinfo(kind).max], dtype=kind)
+    (_, array), numbers = opened(packed([np.arange(5, dtype="<u1"), given]))
+    np.testing.assert_array_equal(np.frombuffer(numbers, kind, array["count"], array["at"]), given)
+    assert array["dtype"] == kind[1:]
+
+
+def test_what_is_neither_of_json_nor_an_array_is_refused():
+    """A set has no order: it is no number of a figure."""
+    with pytest.raises(TypeError, match="set"):
+        packed([{1.0}])
 
 
 def test_short_lists_and_words_stay_as_they_are():

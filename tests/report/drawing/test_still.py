@@ -10,8 +10,9 @@ import pytest
 from pvlvrt_compliance.report.drawing import svg
 from pvlvrt_compliance.report.drawing.canvas import UNITS_A_PX, Canvas
 from pvlvrt_compliance.report.drawing.frame import LEFT_PX, RIGHT_PX, WIDTH_PX, frame_of
+from pvlvrt_compliance.report.drawing.ink import Ink
 from pvlvrt_compliance.report.drawing.model import Area, Axis, Bars, Drawing, Line, Panel, Run, Strip, plain
-from pvlvrt_compliance.report.drawing.paths import area_path, bars_path, line_paths
+from pvlvrt_compliance.report.drawing.paths import area_ways, bars_path, line_ways
 from pvlvrt_compliance.report.language import Texts
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -39,6 +40,18 @@ def points_of(path):
 def line(y, x=None):
     """A line over the whole width."""
     return Line("y", (Run(np.linspace(0, 1, len(y)) if x is None else x, np.asarray(y, dtype=float)),))
+
+
+def line_paths(shown, canvas):
+    """The paths of a line on a canvas."""
+    ink = Ink()
+    return line_ways(shown, canvas, ink).drawn(ink)
+
+
+def area_path(shown, canvas):
+    """The path around the strips of an area on a canvas."""
+    ink = Ink()
+    return area_ways(shown, canvas, ink, along_edges=False).drawn(ink).fill
 
 
 def test_a_smooth_curve_is_where_it_should_be():

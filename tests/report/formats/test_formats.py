@@ -5,7 +5,7 @@ import sys
 import pytest
 
 from pvlvrt_compliance.report import formats
-from pvlvrt_compliance.results.files import ON_REQUEST
+from pvlvrt_compliance.results.files import ON_REQUEST, SHARD
 from pvlvrt_compliance.study import store
 
 
@@ -20,9 +20,9 @@ def one_more(tmp_path, monkeypatch):
 
 
 def test_the_files_of_a_run():
-    """Each has a name of its own, and the output folder knows them all."""
+    """Each has a name of its own, and the output folder knows them all, besides what a part of a run is merged by."""
     files = [form.file for form in formats.formats()]
-    assert sorted(files) == sorted({store.REPORT, store.JUNIT, store.RESULTS, *ON_REQUEST})
+    assert sorted([*files, SHARD]) == sorted({store.REPORT, store.JUNIT, store.RESULTS, *ON_REQUEST})
 
 
 def test_what_is_asked_for_by_name_is_not_always_written():

@@ -1,0 +1,1 @@
+"""Where the tests of a job are run: in this process, in others, on other machines."""

@@ -1,0 +1,1 @@
+"""A run in parts, each by itself wherever it likes, and the parts as one run again."""
