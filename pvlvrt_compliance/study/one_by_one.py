@@ -74,6 +74,8 @@ class OneByOne:
             owner = key if key in found else row[-1].key
             known = self._job.baseline
             found[owner] += (judged.result if known is None else with_baseline(judged.result, known),)
+            if judged.evidence is not None:
+                judged.evidence.forget()
         return found
 
     def _judge(self, profile: Profile, test: TestCase) -> "Judged":

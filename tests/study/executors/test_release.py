@@ -8,6 +8,7 @@ import pytest
 from pvlvrt_compliance.simulation.simulate import simulate
 from pvlvrt_compliance.study.executors.units import run_unit, units_of
 from pvlvrt_compliance.study.job import Asked, make_job
+from pvlvrt_compliance.study.one_by_one import OneByOne
 from pvlvrt_compliance.study.work import Work
 
 
@@ -47,3 +48,21 @@ def test_a_record_goes_with_its_test(profile, test):
     assert tested.result.checks
     assert channels
     assert not [channel for channel in channels if channel() is not None]
+
+
+@pytest.mark.usefixtures("no_collection")
+def test_a_record_goes_where_tests_are_run_one_by_one(monkeypatch):
+    """What a program asks for test by test holds no more than the record of the last one."""
+    channels = []
+
+    def simulated(scenario, parameters):
+        record = simulate(scenario, parameters)
+        channels.append(weakref.ref(record.segments[0]["u_a_v"]))
+        return record
+
+    monkeypatch.setattr("pvlvrt_compliance.simulation.simulate.simulate", simulated)
+    tests = OneByOne(make_job(Asked(profiles=("iec61400-21",), tests=("VD1-full-*", "VD3-full-1"))))
+    for item in tests.tests:
+        assert tests.results(item)
+    assert len(channels) == 3
+    assert [channel() is None for channel in channels] == [True, True, False]
