@@ -30,12 +30,13 @@ from pvlvrt_compliance.measured import Measured
 from pvlvrt_compliance.plant.plant import PlantState
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
-from pvlvrt_compliance.simulation.door.call import call, commanded, hold, put_signals
+from pvlvrt_compliance.simulation.door.call import call, commanded, hold, put_powers, put_signals
 from pvlvrt_compliance.simulation.door.exchange import PROGRESSES
 from pvlvrt_compliance.simulation.door.table import DoorTable, Timing
 from pvlvrt_compliance.simulation.outcome import COMPLETED
 from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.simulate import simulate
+from pvlvrt_compliance.simulation.told import told_of
 from pvlvrt_compliance.simulation.translate import controller_params, plant_params, plant_tables, steady_state
 from pvlvrt_compliance.units import Nominal
 
@@ -84,6 +85,7 @@ def repeat_by_door(door: DoorTable, seen: Measured, plant: PlantState, m: comple
     """What the loop does for the controller in one sample, so many times."""
     total = 0.0
     for n in range(count):
+        put_powers(door, 1.0)
         put_signals(door.signals, 1e-4 * n, seen, 0.0, plant, m, 1.0, 1.0)
         if call(door) != COMPLETED:
             return np.nan
@@ -94,6 +96,7 @@ def repeat_by_door(door: DoorTable, seen: Measured, plant: PlantState, m: comple
 @numba.njit(error_model="numpy")
 def begin(door: DoorTable, seen: Measured, plant: PlantState, m: complex) -> int:
     """Start the controller in this state of the plant."""
+    put_powers(door, 1.0)
     put_signals(door.signals, 0.0, seen, 0.0, plant, m, 1.0, 0.0)
     return hold(door, True)
 
@@ -102,13 +105,13 @@ def time_step(library: Path, repeat: Any, pairs: int) -> Step:
     """Time a control step in a loop in C and through the door, in turn, after one of each to warm up."""
     parameters = Parameters()
     plant = plant_params(parameters, _TEST)
-    grid = plant_tables(parameters, _TEST).grid
-    start = steady_state(plant, grid, controller_params(parameters, _TEST), _TEST, 0.0)
+    tables = plant_tables(parameters, _TEST)
+    start = steady_state(plant, tables.grid, controller_params(parameters, _TEST), _TEST, 0.0)
     seen = Measured(u_g_ab=start.u_g_ab, i_ab=start.plant.i, v_dc=start.plant.v_dc, i_pv=start.plant.i_pv)
     door = LibraryDoor(str(library), {})
     opened: DoorCall = door.open(Nominal())
     timing = Timing(armed=0, ratio=1, held=0, sample_time=1e-4)
-    table = door_table(opened, Nominal(), 0.0, timing, np.full(PROGRESSES, np.nan))
+    table = door_table(opened, told_of(_TEST, parameters, tables), timing, np.full(PROGRESSES, np.nan))
     if begin(table, seen, start.plant, start.m) != COMPLETED:
         raise RuntimeError(door.message())
     rows = [

@@ -68,7 +68,10 @@ def spent(tests: Sequence[Assignment], parameters: Parameters) -> list[Spent]:
             return record
 
         start = time.process_time()
-        run_test(profile, test, parameters, timed)
+        judged = run_test(profile, test, parameters, timed)
+        if judged.evidence is not None:
+            judged.evidence.forget()  # as a session does: else records stay in memory until they are looked for there
+        del judged
         found.append(Spent(simulating, time.process_time() - start - simulating))
     return found
 

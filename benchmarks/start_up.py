@@ -1,21 +1,26 @@
 """Times the main command warm and with nothing compiled yet, its helps and lists, and its peak memory.
 
-Each is run in turn with a Python that imports numba and compiles one function: what the machine does at its best is in
-both. Imports nothing but the standard library, for the sake of the peak memory (`child`).
+Each is run in turn with a Python that imports numba and compiles one function, or with one that imports typer and rich:
+what the machine does at its best is in both. Imports nothing but the standard library, for the sake of the peak memory
+(`child`).
 """
 
 import os
+import statistics
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from child import Run, evaluated, program_path, run
+from child import COMMAND, Run, evaluated, program_path, run
 from row import Row
 
 MAIN_JOB = ("--profile", "iec61400-21", "--sag", "90%")
 _NUMBA = (sys.executable, "-c", "import numba; numba.njit(lambda x: x+1)(1)")
 _EMPTY = (sys.executable, "-c", "pass")
+_TYPER = (sys.executable, "-c", "import typer, rich")
+_LIGHT = ((("--help",), 0.2), (("compare", "--help"), 0.2), (("--version",), 0.1), (("profiles", "list"), 0.3))
+_TYPER_IN_WORDS = 'python -c "import typer, rich"'
 _IN_WORDS = 'python -c "import numba; numba.njit(lambda x: x+1)(1)"'
 
 
@@ -46,16 +51,9 @@ def rows(runs: int, cold_runs: int) -> Iterator[Row]:
     )
     cold = [(_main_job(job, cold=True), run(_NUMBA)) for _ in range(cold_runs)]
     yield _against_numba("the same, nothing compiled yet", cold, must=10, stretch=6)
-    for words, must in ((("--help",), 0.2), (("--version",), 0.1), (("profiles", "list"), 0.3)):
-        timed = [(run([program, *words]), run(_EMPTY)) for _ in range(runs)]
-        yield Row(
-            f"`pvlvrt-check {' '.join(words)}`",
-            [mine.wall_s for mine, _ in timed],
-            "s",
-            must=must,
-            reference="python -c pass",
-            reference_values=[other.wall_s for _, other in timed],
-        )
+    for words, must in _LIGHT:
+        yield _against_typer([program, *words], runs, must)
+    yield _for_the_first_time([program, "--help"], runs)
     if all(mine.peak_mb and other.peak_mb for mine, other in pairs):
         yield Row(
             "peak memory of the main job",
@@ -79,6 +77,44 @@ def _against_numba(what: str, pairs: Sequence[tuple[Run, Run]], *, must: float, 
         reference=_IN_WORDS,
         reference_values=[other.wall_s for _, other in pairs],
     )
+
+
+def _against_typer(command: Sequence[str], runs: int, must: float) -> Row:
+    """A command that says what it has said before: helps and the list of profiles are kept then."""
+    _said(command)
+    timed = [(_said(command), run(_TYPER), run(_EMPTY)) for _ in range(runs)]
+    times_empty = statistics.median(mine.wall_s / empty.wall_s for mine, _, empty in timed)
+    times_typer = statistics.median(mine.wall_s / typer.wall_s for mine, typer, _ in timed)
+    return Row(
+        f"`{COMMAND} {' '.join(command[1:])}`",
+        [mine.wall_s for mine, _, _ in timed],
+        "s",
+        must=must,
+        reference=_TYPER_IN_WORDS,
+        reference_values=[typer.wall_s for _, typer, _ in timed],
+        remark=f"{times_typer:.2f} x the reference, {times_empty:.1f} x `python -c pass`",
+    )
+
+
+def _for_the_first_time(command: Sequence[str], runs: int) -> Row:
+    """The same where nothing is kept yet."""
+    with tempfile.TemporaryDirectory() as folder:
+        empty = ({**os.environ, "NUMBA_CACHE_DIR": str(Path(folder) / str(number))} for number in range(runs))
+        timed = [(_said(command, environment), run(_TYPER)) for environment in empty]
+    return Row(
+        f"`{COMMAND} {' '.join(command[1:])}` for the first time",
+        [mine.wall_s for mine, _ in timed],
+        "s",
+        reference=_TYPER_IN_WORDS,
+        reference_values=[typer.wall_s for _, typer in timed],
+    )
+
+
+def _said(command: Sequence[str], environment: Mapping[str, str] | None = None) -> Run:
+    ended = run(command, environment)
+    if ended.status != 0:
+        raise RuntimeError(f"{' '.join(command)} ended with status {ended.status}")
+    return ended
 
 
 def _main_job(job: Sequence[str], *, cold: bool) -> Run:

@@ -15,26 +15,28 @@ static inline void record_phases(double *a, double *b, double *c, vector ab, dou
     *c = -0.5 * along - across + zero;
 }
 
-static inline void record(double *row, const PlantState *x, const Observed *y, const ControllerSignals *s, double G)
+/* A channel lies in one piece of so many rows. */
+static inline void record(double *row, int64_t rows, const PlantState *x, const Observed *y, const ControllerSignals *s,
+                          double G)
 {
-    record_phases(row + COLUMN_u_a_v, row + COLUMN_u_b_v, row + COLUMN_u_c_v, y->u_ab, y->u_zero);
-    record_phases(row + COLUMN_u0_a_v, row + COLUMN_u0_b_v, row + COLUMN_u0_c_v, y->u0_ab, y->u_zero);
-    record_phases(row + COLUMN_i_a_a, row + COLUMN_i_b_a, row + COLUMN_i_c_a, x->i, 0.0);
-    row[COLUMN_v_dc_v] = x->v_dc;
-    row[COLUMN_i_pv_a] = x->i_pv;
-    row[COLUMN_irradiance_w_m2] = 1000.0 * G;
-    row[COLUMN_connected] = x->closed;
-    row[COLUMN_trip_cause] = x->trip;
-    row[COLUMN_v_fault_pu] = s->V_fault;
-    row[COLUMN_fault_signal] = s->fault;
-    row[COLUMN_frequency_estimate_hz] = s->w / (2 * PI);
-    row[COLUMN_v_dc_ref_v] = s->v_ref;
-    row[COLUMN_p_ref_w] = s->P_ref;
-    row[COLUMN_q_ref_var] = s->Q_ref;
-    row[COLUMN_i_ref_alpha_a] = creal(s->i_ref);
-    row[COLUMN_i_ref_beta_a] = cimag(s->i_ref);
-    row[COLUMN_m_alpha] = creal(s->m);
-    row[COLUMN_m_beta] = cimag(s->m);
+    record_phases(row + rows * COLUMN_u_a_v, row + rows * COLUMN_u_b_v, row + rows * COLUMN_u_c_v, y->u_ab, y->u_zero);
+    record_phases(row + rows * COLUMN_u0_a_v, row + rows * COLUMN_u0_b_v, row + rows * COLUMN_u0_c_v, y->u0_ab, y->u_zero);
+    record_phases(row + rows * COLUMN_i_a_a, row + rows * COLUMN_i_b_a, row + rows * COLUMN_i_c_a, x->i, 0.0);
+    row[rows * COLUMN_v_dc_v] = x->v_dc;
+    row[rows * COLUMN_i_pv_a] = x->i_pv;
+    row[rows * COLUMN_irradiance_w_m2] = 1000.0 * G;
+    row[rows * COLUMN_connected] = x->closed;
+    row[rows * COLUMN_trip_cause] = x->trip;
+    row[rows * COLUMN_v_fault_pu] = s->V_fault;
+    row[rows * COLUMN_fault_signal] = s->fault;
+    row[rows * COLUMN_frequency_estimate_hz] = s->w / (2 * PI);
+    row[rows * COLUMN_v_dc_ref_v] = s->v_ref;
+    row[rows * COLUMN_p_ref_w] = s->P_ref;
+    row[rows * COLUMN_q_ref_var] = s->Q_ref;
+    row[rows * COLUMN_i_ref_alpha_a] = creal(s->i_ref);
+    row[rows * COLUMN_i_ref_beta_a] = cimag(s->i_ref);
+    row[rows * COLUMN_m_alpha] = creal(s->m);
+    row[rows * COLUMN_m_beta] = cimag(s->m);
 }
 
 static inline bool finite_numbers(const PlantState *x, const ControllerSignals *s)
@@ -64,7 +66,7 @@ Outcome run(const PlantState *plant_start, const ControllerState *controller_sta
         if (!finite_numbers(&plant, &signals))
             return (Outcome){.status = NOT_FINITE, .period = n, .plant = plant};
         if (n >= 0)
-            record(samples + CHANNELS * n, &plant, &y, &signals, p->G);
+            record(samples + n, count, &plant, &y, &signals, p->G);
         advance(&plant, m, source, t, p, tables);
         m = signals.m;
     }

@@ -19,7 +19,7 @@ from pvlvrt_compliance.control import controller, lvrt, synchronised
 from pvlvrt_compliance.control.msogi_fll import MsogiFllState
 from pvlvrt_compliance.hardware.hardware import Hardware
 from pvlvrt_compliance.measured import Measured
-from pvlvrt_compliance.plant import grid, inverter, plant, protection, pv_array
+from pvlvrt_compliance.plant import diode_bridge, grid, inverter, plant, protection, pv_array
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation import columns, outcome
@@ -70,7 +70,8 @@ _CONSTANTS_OF_CONTROLLER: Mapping[str, float] = {
     "M_MAX": inverter.M_MAX,
 }
 _CONSTANTS_OF_PLANT: Mapping[str, float] = {
-    "K_DIODES": inverter._K_DIODES,
+    "NO_CURRENT": diode_bridge.NO_CURRENT,
+    "MOST_PARTS": diode_bridge._MOST_PARTS,
     "NEWTON_TOLERANCE": pv_array._NEWTON_TOLERANCE,
     "NEWTON_STEPS": pv_array._NEWTON_STEPS,
     "RELAY_K": protection._K,
@@ -272,8 +273,8 @@ class Twin:
     def prepare(self, arguments: Arguments) -> Callable[[], Any]:
         """Bare call of the compiled loop on these arguments, which must stay alive; fills their samples."""
         a = arguments
-        if not (a.samples.flags.c_contiguous and a.samples.dtype == np.float64):
-            raise ValueError("the twin writes contiguous float64 samples")
+        if not (a.samples.flags.f_contiguous and a.samples.dtype == np.float64):
+            raise ValueError("the twin writes float64 samples, each channel in one piece")
         if a.hardware is not None:
             raise ValueError("the twin has ideal hardware only")
         if a.door is not None:

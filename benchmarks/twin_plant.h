@@ -4,6 +4,7 @@
 #include "vectors.h"
 
 #include "layout.h"
+#include "twin_diodes.h"
 
 static inline Source source_at(double t, int64_t k, const GridTable *table)
 {
@@ -62,29 +63,19 @@ static inline Bridge modulated(vector m, vector i, double v_dc)
     return (Bridge){.u = BRIDGE_GAIN * v_dc * m, .i_dc = BRIDGE_GAIN * dot(m, i)};
 }
 
-static inline Bridge freewheeling(vector i, double v_dc)
-{
-    double size = length(i);
-    if (size == 0.0)
-        return (Bridge){.u = 0.0, .i_dc = 0.0};
-    return (Bridge){.u = -K_DIODES * v_dc / size * i, .i_dc = -K_DIODES * size};
-}
-
-static inline Bridge bridge(vector m, vector i, double v_dc, bool blocked)
-{
-    return blocked ? freewheeling(i, v_dc) : modulated(m, i, v_dc);
-}
+static inline bool is_blocked(const PlantState *x) { return x->blocked || x->trip != NO_TRIP; }
 
 static inline vector terminal_voltage(const PlantState *x, vector i, vector u_inv, vector e, const LineParams *p)
 {
-    bool conducting = x->closed && (x->trip == NO_TRIP || i != 0.0);
+    bool conducting = x->closed && (!is_blocked(x) || i != 0.0);
     return conducting ? p->k_u * u_inv + p->k_e * e + p->k_i * i : e;
 }
 
 static inline Observed observe(const PlantState *x, vector m, const Source *source, const PlantParams *p)
 {
     vector e = source_voltage(source);
-    vector u_inv = bridge(limited_to(M_MAX, m), x->i, x->v_dc, x->trip != NO_TRIP).u;
+    vector u_inv = is_blocked(x) ? blocked_voltage(x->i, e, x->v_dc)
+                                 : modulated(limited_to(M_MAX, m), x->i, x->v_dc).u;
     return (Observed){
         .u_ab = terminal_voltage(x, x->i, u_inv, e, &p->line),
         .u0_ab = e,
@@ -150,23 +141,32 @@ static inline int64_t relays_step(RelayState *x, vector u, vector i, double v_dc
 static inline void plant_step(PlantState *x, vector m, vector e, double u_min, const PlantParams *p)
 {
     double per_farad = p->T_S / p->C;
-    bool blocked = x->trip != NO_TRIP;
-    double v_mid = max(x->v_dc + 0.5 * per_farad * (x->i_pv - bridge(m, x->i, x->v_dc, blocked).i_dc), 0.0);
-    vector u_inv = bridge(m, x->i, v_mid, blocked).u;
-    vector i = x->closed ? p->line.decay * x->i + p->line.gain * (u_inv - e) : 0.0;
-    if (blocked && dot(i, x->i) <= 0.0)
-        i = 0.0;
-    vector i_mid = 0.5 * (x->i + i);
+    bool tripped = x->trip != NO_TRIP;
+    vector i = x->i, i_mid, u_inv;
+    double v_mid, v_dc = x->v_dc, fed = 0.0;
+    if (is_blocked(x)) {
+        if (!x->closed)
+            i = 0.0;
+        blocked_flow(&i, &v_dc, &u_inv, &i_mid, x->i_pv, x->closed ? e : 0.0, p);
+        v_mid = 0.5 * (x->v_dc + v_dc);
+        fed = x->i_pv;
+    } else {
+        v_mid = max(x->v_dc + 0.5 * per_farad * (x->i_pv - modulated(m, x->i, x->v_dc).i_dc), 0.0);
+        u_inv = modulated(m, x->i, v_mid).u;
+        i = x->closed ? p->line.decay * x->i + p->line.gain * (u_inv - e) : 0.0;
+        i_mid = 0.5 * (x->i + i);
+        v_dc -= per_farad * modulated(m, i_mid, v_mid).i_dc;
+    }
     x->x_pv = diode_voltage(v_mid, p->G, x->x_pv, &p->pv);
     x->i_pv = p->pv.n_parallel * (x->x_pv - v_mid / p->pv.n_series) / p->pv.R_s;
-    x->v_dc = max(x->v_dc + per_farad * (x->i_pv - bridge(m, i_mid, v_mid, blocked).i_dc), 0.0);
+    x->v_dc = max(v_dc + per_farad * (x->i_pv - fed), 0.0);
     vector u_pcc = terminal_voltage(x, i_mid, u_inv, e, &p->line);
     int64_t trip = relays_step(&x->relay, u_pcc, i, x->v_dc, u_min, &p->protection, p->T_S);
     x->i = i;
-    x->t_trip = blocked ? x->t_trip + p->T_S : 0.0;
-    if (!blocked)
+    x->t_trip = tripped ? x->t_trip + p->T_S : 0.0;
+    if (!tripped)
         x->trip = trip;
-    x->closed = x->closed && !(blocked && (i == 0.0 || x->t_trip > p->t_breaker));
+    x->closed = x->closed && !(tripped && (i == 0.0 || x->t_trip > p->t_breaker));
 }
 
 static inline void advance(PlantState *x, vector m, Source source, double t, const PlantParams *p,

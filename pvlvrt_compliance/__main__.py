@@ -1,6 +1,6 @@
 """`python -m pvlvrt_compliance`: the command."""
 
-from pvlvrt_compliance.cli.main import main
+from pvlvrt_compliance.cli.start import main
 
 if __name__ == "__main__":
     main()

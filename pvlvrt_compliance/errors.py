@@ -3,15 +3,26 @@
 The command line turns them into one clear line and an exit status; library users catch `PvlvrtError`.
 """
 
-import difflib
 import errno
 from collections.abc import Callable, Iterable, Sequence
+
+from pvlvrt_compliance.texts import each_line, printable
 
 _MOST_LISTED = 100
 
 
 class PvlvrtError(Exception):
-    """Base of all errors of this package."""
+    """Base of all errors of this package.
+
+    Parameters
+    ----------
+    message : str
+        It may quote files, controllers and other libraries: what is kept of it can be shown anywhere
+        (`texts.each_line`).
+    """
+
+    def __init__(self, message: str = "") -> None:
+        super().__init__(each_line(message))
 
 
 class UsageError(PvlvrtError):
@@ -30,9 +41,9 @@ class ProfileError(PvlvrtError):
     """
 
     def __init__(self, origin: str, problems: Iterable[str]) -> None:
-        self.origin = origin
-        self.problems = tuple(problems)
-        super().__init__(listed(origin, self.problems))
+        self.origin = printable(origin)
+        self.problems = tuple(map(printable, problems))
+        super().__init__(listed(self.origin, self.problems))
 
 
 class SimulationError(PvlvrtError):
@@ -91,6 +102,8 @@ def spelled_of(spell: Callable[[str], str], field: str, item: str) -> str:
 
 def near_misses(word: str, known: Iterable[str]) -> list[str]:
     """Return up to three words of those known that a word may have been meant to be, the nearest first."""
+    import difflib  # for who makes a mistake
+
     return difflib.get_close_matches(word, list(known), n=3, cutoff=0.6)
 
 

@@ -7,14 +7,13 @@ from functools import partial
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from unicodedata import category
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from pvlvrt_compliance.errors import UsageError, did_you_mean, spelled_of
 from pvlvrt_compliance.results import ReportDetails, Results
 from pvlvrt_compliance.results.details import FIELDS, LOGO
 from pvlvrt_compliance.results.files import RESULTS, SHARD
-from pvlvrt_compliance.texts import all_printable
+from pvlvrt_compliance.texts import CONTROL
 
 LONGEST_FIELD = 1000
 """Characters of a field, chosen: some fifteen lines of a title page, which a remark may fill."""
@@ -111,6 +110,23 @@ def parts_in(folders: Sequence[str]) -> "list[Part]":
     return sorted(map(_part_in, map(Path, folders)), key=lambda part: part.shard)
 
 
+def check_figures(parts: "Sequence[Part]", formats: Collection[str], spell: "Spell" = str) -> None:
+    """See that parts have the figures of formats that are asked for of the whole alone.
+
+    Raises
+    ------
+    UsageError
+        When there is no such format, it lacks something, or shows figures in a form that was not asked of a part.
+    """
+    from pvlvrt_compliance.report.formats import chosen_formats
+
+    made = [forms for part in parts for forms in part.made.values()]
+    for each in chosen_formats(formats, spell("formats")):
+        if each.name in formats and each.shows and not all(each.shows in forms for forms in made):
+            said = "its figures are made with the records: give it with the parts"
+            raise UsageError(f"{spell('formats')} {each.name}: {said}")
+
+
 def _part_in(folder: Path) -> "Part":
     from pydantic import TypeAdapter
 
@@ -120,6 +136,8 @@ def _part_in(folder: Path) -> "Part":
 
     place = folder / SHARD
     results = read_results(folder / RESULTS)
+    if place.exists() and not place.is_file():  # a pipe would be waited for, a device read without end
+        raise UsageError(f"{place}: cannot be read: it is no ordinary file (--shard makes parts)")
     try:
         with ZipFile(place) as file:
             head = TypeAdapter(Head).validate_json(_packed_in(file, _HEAD))
@@ -159,7 +177,7 @@ def report_details(language: str, given: Mapping[str, str], *, spell: "Spell" = 
             hint = did_you_mean(name, FIELDS) or f"; there are: {', '.join(FIELDS)}"
             raise UsageError(f"{asked}: no field {name!r}{hint}")
         _check_text(given[name], f"{asked} {name}")
-    fields = {name: all_printable(value) for name, value in given.items() if value}
+    fields = {name: value for name, value in given.items() if value}
     if LOGO in fields:
         fields[LOGO] = logo_address(given[LOGO], f"{spelled_of(spell, 'report_fields', LOGO)} {LOGO}")
     return ReportDetails(language=check_language(language, spell("language")), fields=fields)
@@ -168,7 +186,7 @@ def report_details(language: str, given: Mapping[str, str], *, spell: "Spell" = 
 def _check_text(text: str, spelled: str) -> None:
     if len(text) > LONGEST_FIELD:
         raise UsageError(f"{spelled}: {len(text)} characters; at most {LONGEST_FIELD} stand on a title page")
-    if any(category(character) == "Cc" for character in text):
+    if CONTROL.search(text):
         raise UsageError(f"{spelled}: has a control character; a field is one line of text")
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from pvlvrt_compliance.errors import UsageError
 
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = r"[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?"  # possessive: digits are gone through once
 _FRACTION = re.compile(rf"({_NUMBER})\s*(%?)")
 _NOMINAL_FREQUENCIES_HZ = (50.0, 60.0)
 _DURATION = re.compile(rf"({_NUMBER})\s*(ms|s)")

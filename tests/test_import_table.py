@@ -14,7 +14,7 @@ import pvlvrt_compliance
 PACKAGE = Path(pvlvrt_compliance.__file__).parent
 NAME = pvlvrt_compliance.__name__
 
-COMMON = {"errors", "units", "space_vectors", "resources", "texts"}
+COMMON = {"errors", "ordinary_file", "units", "space_vectors", "resources", "texts"}
 KERNELS = {"kernel", "vectors", "sogi"}
 # By folder, or module at the root: what of the package it may import besides itself. "*" is everything; an entry with a
 # dot is one module of a folder.
@@ -24,7 +24,7 @@ ALLOWED = {
     # The public API.
     "__init__": {"api", "errors", "profile", "results", "scenario", "units", "waveforms"},  # each when first used
     # Another way in, beside the command line: the same settings, the same words.
-    "pytest_plugin": {"api", "cli.options", "errors", "report", "results", "settings", "study", "trust"},
+    "pytest_plugin": {"api", "cli.options", "errors", "report", "results", "settings", "study", "texts", "trust"},
     # The public functions; they hand reports to the run, which knows none.
     "api": {"checks", "output", "profile", "results", "scenario", "study", "units", "waveforms"},
     # What there is to say of every grid code that can be named.
@@ -41,7 +41,8 @@ ALLOWED = {
     # Judging: by what evidence says, never by the simulator.
     "checks": COMMON | {"data", "disturbance", "evidence", "measure", "profile", "results", "waveforms"},
     # The one result: plain data, so that reading it stays light.
-    "results": {"errors", "texts", "units", "measure.quantities", "disturbance.model"},
+    "results": {"data.problems", "errors", "ordinary_file", "texts", "units"}
+    | {"measure.quantities", "disturbance.model"},
     # What a check sees of one record.
     "evidence": COMMON | {"disturbance", "measure", "profile", "waveforms"},
     # What standards measure.
@@ -53,9 +54,9 @@ ALLOWED = {
     # The data model of a grid code.
     "profile": COMMON | {"data", "scenario"},
     # What every file that people write shares.
-    "data": {"cache", "errors", "resources"},
+    "data": {"cache", "errors", "ordinary_file", "resources", "texts"},
     # What was written down instead of typed; which settings there are, whoever asks says.
-    "settings": {"controllers.bundled", "data", "errors", "trust"},
+    "settings": {"controllers.bundled", "controllers.spelling", "data", "errors", "ordinary_file", "texts", "trust"},
     # What is asked of grid, weather and set-points.
     "scenario": COMMON | {"data"},
     # Controllers of users: whatever a door needs of the loop lies in simulation/door.
@@ -63,7 +64,7 @@ ALLOWED = {
     # The loop over time, which joins plant, hardware and a controller.
     "simulation": COMMON
     | KERNELS
-    | {"plant", "control", "hardware", "measured", "parameter_group", "places", "scenario", "waveforms"},
+    | {"plant", "control", "data", "hardware", "measured", "parameter_group", "places", "scenario", "waveforms"},
     # The block diagram; control and hardware know nothing of each other.
     "control": COMMON | KERNELS | {"measured", "parameter_group"},
     "hardware": COMMON | KERNELS | {"measured", "parameter_group", "places"},
@@ -72,7 +73,8 @@ ALLOWED = {
     "measured": set(),
     "parameter_group": set(),
     "places": set(),
-    "errors": set(),
+    "errors": {"texts"},
+    "ordinary_file": set(),
     "units": {"errors"},
     "space_vectors": set(),
     "resources": {"errors"},
@@ -112,6 +114,7 @@ NEVER = (
 COMMANDS = {
     "main": {"controllers"},  # what signals and the end of the command are
     "running": {"controllers"},  # likewise
+    "typed": {"controllers"},  # how one is written
     "completion/values": {"controllers", "simulation"},  # names of what there is, which load no kernel
     "controllers/header": {"controllers"},
     "controllers/inspect": {"controllers", "simulation"},  # parameters, which load no kernel
@@ -328,4 +331,4 @@ def test_a_list_that_is_kept_needs_no_models(monkeypatch, tmp_path):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     code = f"from {NAME}.cli.main import run\nrun(['profiles', 'list'])"
     assert "pydantic" in loaded_by(code)
-    assert not loaded_by(code) & (LIGHT - {"email.message"} | {f"{NAME}.profile", f"{NAME}.checks"})
+    assert not loaded_by(code) & (LIGHT | {"importlib.metadata", f"{NAME}.profile", f"{NAME}.checks"})

@@ -38,6 +38,7 @@ def check(
     xr: str | float | None = None,
     transformer: str | None = None,
     events: "File | Sequence[Event] | None" = None,
+    recordings: File | None = None,
     settings: Mapping[str, Any] | Sequence[str] = (),
     fidelity: str | None = None,
     tests: str | Sequence[str] = (),
@@ -84,6 +85,8 @@ def check(
         Of every test: Hz, or ``"50Hz"``; degrees C, or ``"45C"``; ratios; vector group.
     events : str, path or sequence of events, optional
         What happens besides.
+    recordings : str or path, optional
+        Folder that recordings may lie in besides that of the file that names them.
     settings : mapping or sequence of str
         Parameters, ``{"controller.pr_integral_gain": 0.2}`` or ``["controller.pr_integral_gain=0.2"]``.
     fidelity : str, optional
@@ -164,6 +167,7 @@ def check(
         "xr": xr,
         "transformer": transformer,
         "events": fspath(events) if isinstance(events, str | PathLike) else events,
+        "recordings": None if recordings is None else fspath(recordings),
         "settings": assignments(settings),
         "fidelity": fidelity,
         "tests": texts(tests),

@@ -74,7 +74,11 @@ def evaluate(
     TestResult
         A verdict on each requirement; what cannot be measured is `not_evaluated` with the reason, nothing is raised.
     """
-    return judge_record(profile, test, evidence_of(profile, test, waveforms, nominal, available_power_w, disturbance))
+    evidence = evidence_of(profile, test, waveforms, nominal, available_power_w, disturbance)
+    try:
+        return judge_record(profile, test, evidence)
+    finally:
+        evidence.forget()  # else the record stays in memory until the interpreter looks for what nobody needs
 
 
 def evidence_of(

@@ -6,7 +6,6 @@ import numpy as np
 
 from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.evidence.no_load import has_source
-from pvlvrt_compliance.measure.sequences import sequence_phasors
 from pvlvrt_compliance.profile.procedure import Conditions
 from pvlvrt_compliance.waveforms.joining import window_on_one_grid
 from pvlvrt_compliance.waveforms.trip_causes import DC_OVERVOLTAGE, in_words
@@ -48,7 +47,8 @@ def _wrong_order(evidence: Evidence) -> str | None:
     if start_s - begin_s < _LEAST_ORDER_CYCLES / nominal_hz:
         return None  # whoever measures the start says so
     seen = window_on_one_grid(evidence.waveforms, begin_s, start_s)
-    phasors = np.abs(np.stack(sequence_phasors(seen, kind, nominal_hz))) / evidence.nominal.phase_voltage_peak_v
+    phasors = np.abs(evidence.instruments.sequence_phasors(seen, kind, nominal_hz))
+    phasors /= evidence.nominal.phase_voltage_peak_v
     phasors = phasors[:, np.isfinite(phasors).all(axis=0)]
     if not phasors.size:
         return None

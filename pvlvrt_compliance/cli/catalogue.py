@@ -1,10 +1,9 @@
 """`--list`: the selected tests as a table, or as JSON."""
 
-import json
 from typing import Any
 
 from pvlvrt_compliance.cli.tables import Column, print_table
-from pvlvrt_compliance.cli.telling import tell
+from pvlvrt_compliance.cli.telling import say, say_json, tell
 from pvlvrt_compliance.study.job import Job
 from pvlvrt_compliance.study.selection import Assignment
 
@@ -21,16 +20,16 @@ def show_tests(job: Job, *, as_json: bool = False) -> int:
     for note in job.notes:
         tell(note)
     if as_json:
-        print(json.dumps([_entry(item) for item in job.tests], indent=2))
+        say_json([_entry(item) for item in job.tests])
         return 0
     several = len(job.profiles) > 1
     columns = (Column("profile"), *_COLUMNS) if several else _COLUMNS
     rows = [((item.profile.id,) if several else ()) + _cells(item) for item in job.tests]
     print_table(columns, rows)
     names = ", ".join(profile.id for profile in job.profiles)
-    print(f"{len(job.tests)} test{'' if len(job.tests) == 1 else 's'} of {names}")
+    say(f"{len(job.tests)} test{'' if len(job.tests) == 1 else 's'} of {names}")
     if job.left_out:
-        print(f"{len(job.left_out)} more with --include-long")
+        say(f"{len(job.left_out)} more with --include-long")
     return 0
 
 

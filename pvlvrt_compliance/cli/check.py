@@ -5,7 +5,10 @@ from typing import Annotated, Any
 
 import typer
 
+from pvlvrt_compliance.cli.at_once import VERSION
+from pvlvrt_compliance.cli.at_once import version as version_in_words
 from pvlvrt_compliance.cli.options import given_options, spelled, takes_options
+from pvlvrt_compliance.cli.telling import say
 
 _HELP = """
 Judge a PV inverter's controller against a grid code.
@@ -22,9 +25,7 @@ evaluated or written, or nothing was judged, 130 interrupted, 143 terminated (SI
 
 def _print_version(context: typer.Context, wanted: bool) -> None:
     if wanted and not context.resilient_parsing:  # as a shell reads the line that it completes
-        from pvlvrt_compliance import __version__
-
-        print(f"pvlvrt-check {__version__}")
+        say(version_in_words())
         raise typer.Exit
 
 
@@ -32,7 +33,7 @@ def _print_version(context: typer.Context, wanted: bool) -> None:
 def check(
     context: typer.Context,
     version: Annotated[
-        bool, typer.Option("--version", metavar="", callback=_print_version, is_eager=True, help="Show the version.")
+        bool, typer.Option(VERSION, metavar="", callback=_print_version, is_eager=True, help="Show the version.")
     ] = False,
     **given: Any,
 ) -> int | None:

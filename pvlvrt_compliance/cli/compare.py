@@ -119,19 +119,19 @@ def _write(comparison: "Comparison", sides: "tuple[Side, Side]", folder: Path, l
 
 
 def _show(comparison: "Comparison", folder: Path, left_out: Sequence[str], *, quiet: bool) -> None:
-    from rich.console import Console
-
+    from pvlvrt_compliance.cli.telling import screen
     from pvlvrt_compliance.report.comparison import console
     from pvlvrt_compliance.results.files import COMPARISON_PAGE
+    from pvlvrt_compliance.texts import one_line
 
-    screen = Console(highlight=False, markup=False, emoji=False)
+    shown = screen()
     with suppress(SystemExit):  # rich ends the program when the reader of stdout has gone; the verdict still stands
         if quiet:
-            screen.print(console.summary_text(comparison), soft_wrap=True)
+            shown.print(console.summary_text(comparison), soft_wrap=True)
             return
-        if not screen.is_terminal:
-            screen.width = console.WIDTH_OF_A_FILE
-        screen.print(console.render(comparison))
+        if not shown.is_terminal:
+            shown.width = console.WIDTH_OF_A_FILE
+        shown.print(console.render(comparison))
         for line in console.left_out(left_out):
-            screen.print(line, soft_wrap=True)
-        screen.print(f"Report: {folder / COMPARISON_PAGE}", soft_wrap=True)
+            shown.print(line, soft_wrap=True)
+        shown.print(f"Report: {one_line(str(folder / COMPARISON_PAGE), None)}", soft_wrap=True)

@@ -1,24 +1,40 @@
-"""What the command prints where GitHub's runner reads it: no text of others commands the runner."""
+"""The streams of the command: no line of them commands a CI service, and none is lost to an encoding.
 
+What is printed is `printable` already; here it is looked at as it falls: a table that is folded begins lines of its
+own, and what an encoding lacks is known by its stream alone.
+"""
+
+import io
 import sys
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, redirect_stderr, redirect_stdout
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, redirect_stderr, redirect_stdout, suppress
 from typing import Any, TextIO
 
-from pvlvrt_compliance.report.workflow_commands import harmless, is_read
+from pvlvrt_compliance.report.workflow_commands import is_read
+from pvlvrt_compliance.texts import harmless, write_any_name
 
 
 @contextmanager
 def guarded() -> Iterator[None]:
-    """Whatever is printed meanwhile, on either stream, has no line that the runner would obey, if there is a runner."""
+    """Whatever is printed meanwhile, on either stream, has no line that a CI service would obey.
+
+    A terminal is written to as it comes: nobody obeys lines there, unless a runner has made one.
+    """
     with ExitStack() as stack:
-        if is_read():
-            for stream, redirect in ((sys.stdout, redirect_stdout), (sys.stderr, redirect_stderr)):
-                if stream is not None:
-                    lines = _Lines(stream)
-                    stack.enter_context(redirect(lines))
-                    stack.callback(lines.end)
+        for stream, redirect in ((sys.stdout, redirect_stdout), (sys.stderr, redirect_stderr)):
+            if isinstance(stream, io.TextIOWrapper) and stream.errors != "backslashreplace":  # stderr's own
+                stack.callback(_whatever_it_takes, write_any_name(stream))
+            if stream is not None and (is_read() or not stream.isatty()):
+                lines = _Lines(stream)
+                stack.enter_context(redirect(lines))
+                stack.callback(_whatever_it_takes, lines.end)
         yield
+
+
+def _whatever_it_takes(last: Callable[[], None]) -> None:
+    """Do what is due at the end; a stream that takes nothing more says so again when it is flushed."""
+    with suppress(OSError):
+        last()
 
 
 def command_the_runner(lines: str) -> None:
@@ -31,7 +47,7 @@ def command_the_runner(lines: str) -> None:
 
 
 class _Lines:
-    """A stream that is written to in whole lines, each harmless to the runner."""
+    """A stream that is written to in whole lines, each harmless to a CI service."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream

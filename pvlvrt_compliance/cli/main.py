@@ -1,33 +1,34 @@
-"""Entry point: reads the command line, turns every error into one clear line and an exit status."""
+"""Reads the command line with typer, turns every error into one clear line and an exit status."""
 
 import gc
-import io
-import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from copy import copy
 from typing import Any
 
 import typer
 
 from pvlvrt_compliance.cli import baseline, config, controllers, profiles
+from pvlvrt_compliance.cli.at_once import HELP
 from pvlvrt_compliance.cli.check import check
 from pvlvrt_compliance.cli.compare import compare
 from pvlvrt_compliance.cli.completion.answering import answer, is_asked
 from pvlvrt_compliance.cli.completion.command import completion
 from pvlvrt_compliance.cli.completion.scripts import PROGRAM
+from pvlvrt_compliance.cli.environment import forget_what_is_no_width
+from pvlvrt_compliance.cli.flushing import UNWRITTEN_STATUS, flushed, unwritten
 from pvlvrt_compliance.cli.guarding import guarded
 from pvlvrt_compliance.cli.merge import merge
 from pvlvrt_compliance.cli.schema import schema
-from pvlvrt_compliance.cli.telling import tell
+from pvlvrt_compliance.cli.telling import say_aside, tell
 from pvlvrt_compliance.cli.typed import read_what_is_given, understood
 from pvlvrt_compliance.compiled.notes import tell_in_lines
 from pvlvrt_compliance.controllers.process.command import STOPS, become_the_command, leave, status_of, words_of
 from pvlvrt_compliance.errors import PvlvrtError, UnfinishedError
-from pvlvrt_compliance.texts import write_any_name
 
 USAGE_STATUS = 2
-UNWRITTEN_STATUS = CRASHED_STATUS = 3
+CRASHED_STATUS = 3
 
 # Of what a start makes, next to nothing is ever to be collected; Python would look for it two hundred times.
 _COLLECTIONS = (20_000, 20, 10)
@@ -35,7 +36,7 @@ _COLLECTIONS = (20_000, 20, 10)
 # What typer raises for an option it does not know or cannot read. Its own name has moved between versions.
 _CommandLineError: Any = typer.BadParameter.__bases__[0]
 
-_SETTINGS: dict[str, Any] = {"help_option_names": ["-h", "--help"]}
+_SETTINGS: dict[str, Any] = {"help_option_names": list(HELP)}
 
 app = typer.Typer(
     name=PROGRAM,
@@ -57,15 +58,16 @@ app.add_typer(baseline.app, name="baseline")
 
 def run(arguments: Sequence[str]) -> int:
     """Run the command with these arguments and return its exit status."""
+    forget_what_is_no_width()
     with guarded():
         return _run(arguments)
 
 
 def _run(arguments: Sequence[str]) -> int:
-    command: Any = typer.main.get_command(app)
     if is_asked():
-        return answer(command)
+        return answer(typer.main.get_command(app))
     try:
+        command = _commands_for(arguments)
         called, words, rest = _called(command, understood(command, arguments))
         read_what_is_given(called, rest)
         status = called.main(
@@ -88,6 +90,22 @@ def _run(arguments: Sequence[str]) -> int:
     return status if isinstance(status, int) else 0
 
 
+def _commands_for(arguments: Sequence[str]) -> Any:
+    """The commands among which the called one is: all of them, or those that the first word names.
+
+    Typer takes the signature of every function apart, which is most of what a short command does. Where the first word
+    names a command, no option stands before it and no other is asked for.
+    """
+    word = arguments[0] if arguments else ""
+    groups = [group for group in app.registered_groups if group.name == word]
+    commands = [known for known in app.registered_commands if known.callback and known.callback.__name__ == word]
+    if not groups and not commands:
+        return typer.main.get_command(app)
+    part = copy(app)
+    part.registered_groups, part.registered_commands, part.registered_callback = groups, commands, None
+    return typer.main.get_group(part)
+
+
 def _called(command: Any, words: list[str]) -> tuple[Any, list[str], list[str]]:
     """The command that words are for, those that call it, and the rest.
 
@@ -107,45 +125,26 @@ def main() -> None:
     gc.set_threshold(*_COLLECTIONS)
     tell_in_lines()
     become_the_command()
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        write_any_name(sys.stdout)
     try:
-        status = _flushed(run(sys.argv[1:]))
+        status = flushed(run(sys.argv[1:]))
     except Exception:
         # Python's own status for a crash is 1, which means here that a check failed.
         import traceback
 
         with suppress(OSError), guarded():
-            traceback.print_exc()
+            say_aside(traceback.format_exc().removesuffix("\n"))
         status = CRASHED_STATUS
     except STOPS as end:
         status = status_of(end)
     leave(status)
 
 
-def _flushed(status: int) -> int:
-    """Write what is still to be written; the status with which the command ends then."""
-    try:
-        if sys.stdout is not None:
-            sys.stdout.flush()
-    except OSError as error:
-        # Python would try it again at its end, and end with a status of its own.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        if not isinstance(error, BrokenPipeError):
-            return status if status == UNWRITTEN_STATUS else _complain(_unwritten(error), UNWRITTEN_STATUS)
-    return status
-
-
 def _complain_of(error: PvlvrtError | OSError) -> int:
     if isinstance(error, UnfinishedError):
         return _complain(str(error), UNWRITTEN_STATUS)
     if isinstance(error, OSError) and error.filename is None:  # of all that is written, one stream has no name
-        return _complain(_unwritten(error), UNWRITTEN_STATUS)
+        return _complain(unwritten(error), UNWRITTEN_STATUS)
     return _complain(str(error))
-
-
-def _unwritten(error: OSError) -> str:
-    return f"standard output cannot be written: {error.strerror or error}"
 
 
 def _complain(message: str, status: int = USAGE_STATUS) -> int:

@@ -22,7 +22,7 @@ Example: [bold]pvlvrt-check merge part-1 part-2 part-3 --output report[/bold]
 Exit status: that of the main command for the whole run; 2 where the parts do not make one.
 """
 
-_OPTIONS = {name: of_output.OPTIONS[name] for name in ("output", "exit_zero", "verbose", "quiet")}
+_OPTIONS = {name: of_output.OPTIONS[name] for name in ("output", "formats", "exit_zero", "verbose", "quiet")}
 
 
 @takes(_OPTIONS)
@@ -32,13 +32,16 @@ def merge(
 ) -> int:
     """Put the parts of a run together."""
     from pvlvrt_compliance.cli.running import run
-    from pvlvrt_compliance.output import parts_in
+    from pvlvrt_compliance.output import check_figures, parts_in
     from pvlvrt_compliance.results.files import FOLDER
     from pvlvrt_compliance.study.shards.merging import whole_of
 
-    own = {name: value for name, value in given.items() if name in _OPTIONS and value is not None}
+    own: dict[str, Any] = {name: value for name, value in given.items() if name in _OPTIONS and value is not None}
     output = str(own.pop("output", FOLDER))
-    whole = whole_of([part.with_given(_checked(part)) for part in parts_in(folders)], output)
+    formats = tuple(own.pop("formats", ()))
+    parts = [part.with_given(_checked(part)) for part in parts_in(folders)]
+    check_figures(parts, formats, spelled)
+    whole = whole_of(parts, output, formats)
     return run(
         whole.job,
         command=whole.command,

@@ -4,9 +4,11 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import monotonic
 
-from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, SpinnerColumn, Task, TextColumn
 from rich.text import Text
+
+from pvlvrt_compliance.cli.telling import screen
+from pvlvrt_compliance.texts import one_line
 
 _QUIET_S = 2.0  # what is over by then needs no forecast
 _WIDTH = 20  # of the bar, in columns: the name of a test and the forecast stand beside it
@@ -16,12 +18,18 @@ _TENTHS_S, _MINUTE_S, _HOUR_S = 9.95, 60.0, 3600.0
 @contextmanager
 def progress_bar(tests: int, quiet: bool) -> Iterator[Callable[[str, int, int], None]]:
     """Bar on stderr in a terminal; elsewhere silent. Calls name the test that begins and how many are done."""
-    log = Console(stderr=True)
+    log = screen(aside=True)
     if quiet or not log.is_terminal:
         yield _silent  # a bar that is switched off still ends a line, with rich before 14.3
         return
     pace = _Pace()
-    columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(_WIDTH), MofNCompleteColumn(), pace)
+    columns = (
+        SpinnerColumn("line" if log.options.ascii_only else "dots"),
+        TextColumn("{task.description}", markup=False),
+        BarColumn(_WIDTH),
+        MofNCompleteColumn(),
+        pace,
+    )
     with Progress(*columns, console=log, transient=True) as progress:
         task = progress.add_task("preparing the simulator (once after an update: about 15 s)", total=tests)
         begun = False
@@ -29,7 +37,7 @@ def progress_bar(tests: int, quiet: bool) -> Iterator[Callable[[str, int, int], 
         def advance(test: str, done: int, _total: int) -> None:
             nonlocal begun
             if begun:
-                progress.update(task, description=test, completed=done)
+                progress.update(task, description=one_line(test), completed=done)
             begun = True
             pace.begin()
 

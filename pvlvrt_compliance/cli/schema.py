@@ -1,5 +1,7 @@
 """`pvlvrt-check schema`: the JSON Schema of results.json."""
 
+from pvlvrt_compliance.cli.telling import hand_over
+
 
 def schema() -> None:
     """Print the JSON Schema of results.json.
@@ -8,4 +10,4 @@ def schema() -> None:
     """
     from pvlvrt_compliance.report.formats.results_json import schema as schema_text
 
-    print(schema_text(), end="")
+    hand_over(schema_text())

@@ -5,20 +5,19 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-
+from pvlvrt_compliance.cli.telling import screen
 from pvlvrt_compliance.report import console, doubts
 from pvlvrt_compliance.report.formats import chosen_formats
 from pvlvrt_compliance.results import Results
 from pvlvrt_compliance.results.files import REPORT
-from pvlvrt_compliance.texts import printable, shell_word
+from pvlvrt_compliance.texts import each_line, one_line, shell_word
 
 
 def log(text: str) -> None:
     """Say on stderr why a run has ended early; in a file a line stays one line."""
-    screen = Console(stderr=True, highlight=False, markup=False, emoji=False)
+    beside = screen(aside=True)
     with suppress(OSError):
-        screen.print(printable(text), soft_wrap=not screen.is_terminal)
+        beside.print(each_line(text), soft_wrap=not beside.is_terminal)
 
 
 def show(
@@ -38,29 +37,29 @@ def show(
     OSError
         When standard output cannot be written.
     """
-    screen = Console(highlight=False, markup=False, emoji=False)  # a profile's texts are shown as they are
+    shown = screen()
     if quiet:
-        screen.print(console.summary_line(results, exit_zero=exit_zero), soft_wrap=True)
+        shown.print(console.summary_line(results, exit_zero=exit_zero), soft_wrap=True)
         return
-    if not screen.is_terminal:
-        screen.width = max(screen.width, console.least_width(results))
-    screen.print(console.render(results, exit_zero=exit_zero))
+    if not shown.is_terminal:
+        shown.width = max(shown.width, console.least_width(results))
+    shown.print(console.render(results, exit_zero=exit_zero))
     if own_controller:
-        screen.print(_rates(results.provenance), soft_wrap=not screen.is_terminal)
+        shown.print(_rates(results.provenance), soft_wrap=not shown.is_terminal)
     for line in doubts.in_full(results) if verbose else filter(None, [doubts.in_short(results)]):
         # In a file a line stays one line; a terminal would cut it in the middle of a word.
-        screen.print(line, soft_wrap=not screen.is_terminal)
+        shown.print(line, soft_wrap=not shown.is_terminal)
     for profile in results.profiles:
         if profile.left_out:
             left_out = f"Left out: {', '.join(profile.left_out)} of {profile.id} (long; --include-long runs them)"
-            screen.print(left_out, soft_wrap=not screen.is_terminal)
+            shown.print(left_out, soft_wrap=not shown.is_terminal)
         if profile.not_run:
             not_run = f"Not run: {', '.join(profile.not_run)} of {profile.id} (the run ended before)"
-            screen.print(not_run, soft_wrap=not screen.is_terminal)
+            shown.print(not_run, soft_wrap=not shown.is_terminal)
     if results.baseline and (results.baseline.better or results.baseline.gone):
         words = ("pvlvrt-check", "baseline", "update", results.baseline.file, "--results", str(folder))
-        screen.print(f"To update the baseline: {' '.join(map(shell_word, words))}", soft_wrap=True)
-    screen.print(f"Report: {_files(folder, formats)}", soft_wrap=True)
+        shown.print(f"To update the baseline: {' '.join(map(shell_word, words))}", soft_wrap=True)
+    shown.print(f"Report: {_files(folder, formats)}", soft_wrap=True)
 
 
 def _rates(origin: Mapping[str, Any]) -> str:
@@ -76,4 +75,4 @@ def _rates(origin: Mapping[str, Any]) -> str:
 def _files(folder: Path, formats: Collection[str]) -> str:
     """The report that people read, and the files that were asked for besides."""
     asked = [each.file for each in chosen_formats(formats) if each.asked_for]
-    return ", ".join(str(folder / file) for file in (REPORT, *asked))
+    return one_line(", ".join(str(folder / file) for file in (REPORT, *asked)), None)

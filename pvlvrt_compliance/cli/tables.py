@@ -8,6 +8,9 @@ from rich.console import Console
 from rich.measure import Measurement
 from rich.table import Table
 
+from pvlvrt_compliance.cli.telling import screen
+from pvlvrt_compliance.texts import printable
+
 
 class Column(NamedTuple):
     """A column: its heading, whether it is of numbers, and whether its cells may go on in the next line."""
@@ -28,7 +31,7 @@ def print_table(columns: Sequence[Column], rows: Sequence[Sequence[str]], gap: i
     gap : int
         Blanks between two columns.
     """
-    screen = Console(highlight=False, markup=False, emoji=False)  # a profile's texts are shown as they are
+    shown = screen()
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, gap - 1, 0, 0))
     for column in columns:
         table.add_column(
@@ -38,22 +41,22 @@ def print_table(columns: Sequence[Column], rows: Sequence[Sequence[str]], gap: i
             overflow="fold",
         )
     for row in rows:
-        table.add_row(*row)
-    if not screen.is_terminal:
-        screen.width = _whole_width(screen, table)
-    screen.print(table)
+        table.add_row(*map(printable, row))
+    if not shown.is_terminal:
+        shown.width = _whole_width(shown, table)
+    shown.print(table)
 
 
 def terminal_columns() -> int | None:
     """Width of the terminal that stdout is; nothing of a file or a pipe, where a line stays whole."""
-    screen = Console()
-    return screen.width if screen.is_terminal else None
+    shown = screen()
+    return shown.width if shown.is_terminal else None
 
 
-def _whole_width(screen: Console, table: Table) -> int:
+def _whole_width(shown: Console, table: Table) -> int:
     """Columns that a table needs when nothing in it goes on in a next line."""
-    endless = screen.options.update(width=_ENDLESS)
-    return max(screen.width, Measurement.get(screen, endless, table).maximum)
+    endless = shown.options.update(width=_ENDLESS)
+    return max(shown.width, Measurement.get(shown, endless, table).maximum)
 
 
 _ENDLESS = 100_000

@@ -5,20 +5,17 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import PurePath
 from typing import Any, NamedTuple
 
+from pvlvrt_compliance.cli.at_once import HELP, VERSION
+from pvlvrt_compliance.controllers.spelling import MODULE_AND_CLASS
 from pvlvrt_compliance.errors import UsageError, did_you_mean, near_misses
 from pvlvrt_compliance.texts import shell_word
 
-HELP = ("-h", "--help")
-
-_A_CONTROLLER = re.compile(r".+\.py:\w+|.+\.(so|dll|dylib|fmu)|stdio:.+|tcp://.+")
+_A_CONTROLLER = re.compile(rf"{MODULE_AND_CLASS.pattern}|.+\.py:\w+|.+\.(so|dll|dylib|fmu)|stdio:.+|tcp://.+")
 _A_DEPTH = re.compile(r"\d+([.,]\d+)?\s*%")
 _A_NUMBER = re.compile(r"[+-]?\d+([.,]\d+)?")
 _A_UNIT = re.compile(r"[^\W\d]+(/.*)?|%|°C?")
 _PAIR = "--two-phase"
 _PROFILE = "--profile"
-
-_ACTS_AT_ONCE = "--version"
-"""The option of the main command that has its effect before a command is looked for."""
 
 _LOOKS_AT = {("profiles", _PROFILE): "show", ("controllers", "--controller"): "inspect"}
 """Which command of a group looks at what an option of the main one names."""
@@ -90,7 +87,7 @@ def _check(command: Any, words: Sequence[str], path: tuple[str, ...]) -> None:
             if word not in command.commands:
                 raise UsageError(_no_command(_Place(words, place - 1, path), command.commands, options))
             _check(command.commands[word], words[place:], (*path, word))
-            if stray := [option for option in before if option != _ACTS_AT_ONCE]:
+            if stray := [option for option in before if option != VERSION]:
                 raise UsageError(_before_a_command(stray, command, words[place - 1 :]))
             return
         before.append(name)

@@ -4,9 +4,7 @@ That finds damage, not malice: who may write in the folder may write a file with
 """
 
 import hashlib
-import shutil
 import stat
-import uuid
 from contextlib import suppress
 from pathlib import Path
 
@@ -64,6 +62,8 @@ def write_checked(file: Path, purpose: str, content: bytes) -> None:
     OSError
         When it cannot be written; nothing of it is left then.
     """
+    import uuid  # reading needs neither this nor shutil
+
     file.parent.mkdir(parents=True, exist_ok=True)
     unfinished = file.with_name(f".{uuid.uuid4().hex}.part")
     try:
@@ -77,6 +77,8 @@ def write_checked(file: Path, purpose: str, content: bytes) -> None:
 
 def throw_away(file: Path) -> None:
     """Remove whatever stands in a file's place, as far as that is allowed."""
+    import shutil
+
     with suppress(OSError):
         if file.is_dir() and not file.is_symlink():
             shutil.rmtree(file)

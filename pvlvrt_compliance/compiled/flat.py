@@ -4,8 +4,10 @@ A word has 8 bytes. A number is one (a complex one two, or one of two halves in 
 lengths and strides, a tuple its parts one after another, and none nothing.
 """
 
+import ctypes
 import importlib
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,6 +22,8 @@ _KINDS: dict[type, str] = {
     **{np.float64: "f8", np.float32: "f4", np.complex128: "c16", np.complex64: "c8", np.int64: "i8", np.bool_: "b1"},
 }
 _DTYPES = "biufc"
+
+_C_ORDER, _F_ORDER, _ALIGNED, _WRITEABLE = 0x1, 0x2, 0x100, 0x400  # of `numpy.ndarray.flags.num`
 
 
 class NotFlatError(Exception):
@@ -74,12 +78,29 @@ def _take(x: Any, kinds: list[Kind], words: list[Any]) -> None:
         kinds.append((of, len(x)))
         for part in x:
             _take(part, kinds, words)
-    elif of is np.ndarray and x.dtype.isnative and x.dtype.kind in _DTYPES and x.flags.aligned:
-        order = "C" if x.flags.c_contiguous else "F" if x.flags.f_contiguous else "A"
-        kinds.append(ArrayKind(x.dtype.str, x.ndim, order, x.flags.writeable))
-        words += (x.__array_interface__["data"][0], *x.shape, *x.strides)
+    elif of is np.ndarray:
+        kinds.append(_array_kind(x.dtype, x.ndim, x.flags.num))
+        words += (_address(x), *x.shape, *x.strides)
     else:
         raise NotFlatError(f"{of.__module__}.{of.__qualname__}")
+
+
+@lru_cache(maxsize=256)
+def _array_kind(dtype: Any, ndim: int, flags: int) -> ArrayKind:
+    """Kind of an array by its flags, all in one number: numpy takes as long to tell each as to tell all."""
+    if not (dtype.isnative and dtype.kind in _DTYPES and flags & _ALIGNED):
+        raise NotFlatError(f"numpy.ndarray of {dtype}")
+    order = "C" if flags & _C_ORDER else "F" if flags & _F_ORDER else "A"
+    return ArrayKind(dtype.str, ndim, order, bool(flags & _WRITEABLE))
+
+
+def _address(x: Any) -> int:
+    """Where the numbers of an array lie; of one that may be written, by a way four times as fast."""
+    try:
+        return ctypes.addressof(ctypes.c_char.from_buffer(x))
+    except (TypeError, ValueError, BufferError):
+        address: int = x.__array_interface__["data"][0]
+        return address
 
 
 def layout(kinds: Iterable[Kind]) -> str:

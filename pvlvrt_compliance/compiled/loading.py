@@ -2,6 +2,7 @@
 
 import ctypes
 import json
+import math
 import pickle
 import struct
 import sys
@@ -69,6 +70,10 @@ class Loaded:
         return self._result.built(iter(self._taken.unpack_from(taken)))
 
 
+_OF_MATHEMATICS = ("expm1", "log1p", "atan2", "hypot", "cbrt")
+"""Functions of C's library that compiled code calls by their names."""
+
+
 class UnresolvedError(Exception):
     """Code needs something that is nowhere."""
 
@@ -78,7 +83,7 @@ def _find(names: Sequence[str]) -> None:
 
     What a platform's own libraries lack, and memory that compiled code allocates, are numba's.
     """
-    if sys.platform != "win32" and not _missing(names):
+    if sys.platform != "win32" and not _missing(_mathematics(names)):
         return
     from numba.core.registry import cpu_target
 
@@ -86,6 +91,17 @@ def _find(names: Sequence[str]) -> None:
     context.refresh()
     if missing := _missing(names):
         raise UnresolvedError(", ".join(missing))
+
+
+def _mathematics(names: Sequence[str]) -> Sequence[str]:
+    """The same names, once LLVM knows those of them that Python's own `math` has from C's library."""
+    missing = _missing(names)
+    if missing:
+        library = ctypes.CDLL(getattr(math, "__file__", None))  # built in where it has no file
+        for name in missing:
+            if name in _OF_MATHEMATICS and (function := getattr(library, name, None)) is not None:
+                binding.add_symbol(name, ctypes.cast(function, ctypes.c_void_p).value)
+    return names
 
 
 def _missing(names: Sequence[str]) -> list[str]:

@@ -4,7 +4,7 @@ import warnings
 from pathlib import Path
 
 from pvlvrt_compliance.errors import CompiledCodeWarning, KeptFileWarning
-from pvlvrt_compliance.texts import printable
+from pvlvrt_compliance.texts import each_line, printable
 
 
 def discard(file: Path, why: object) -> None:
@@ -40,6 +40,6 @@ def tell_in_lines() -> None:
     ) -> str:
         if issubclass(category, KeptFileWarning):
             return f"pvlvrt-check: {printable(str(message))}\n"
-        return others(message, category, filename, lineno, line)
+        return each_line(others(message, category, filename, lineno, line))
 
     warnings.formatwarning = formatted

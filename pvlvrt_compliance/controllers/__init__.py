@@ -32,11 +32,17 @@ class Measurements(NamedTuple):
     enabled: float  # 0: commands do not act yet, the inverter stays in its steady state; 1: they act
     connected: float  # 0: the breaker is open
     irradiance_w_m2: float
-    p_set_w: float  # most active power that is asked for: nominal (W)
+    p_set_w: float  # active power that is asked for: what the array can give, at most the nominal (W)
     q_set_var: float  # set-point of reactive power outside of faults, positive: into the grid as a capacitor does (var)
     frequency_nominal_hz: float
     apparent_power_nominal_va: float
     voltage_nominal_v: float  # phase to neutral, rms (V)
+    p_available_w: float = 0.0  # most that the array can give at this irradiance (W)
+    slow_task_due: float = 1.0  # 1 in every n-th sample, n being the attribute ``every``; 0 in between
+    v_dc_nominal_v: float = 0.0  # of the array's maximum-power point at 1000 W/m2, 25 C (V)
+    filter_inductance_h: float = 0.0
+    filter_resistance_ohm: float = 0.0
+    dc_link_capacitance_f: float = 0.0
 
 
 @runtime_checkable
@@ -49,6 +55,14 @@ class Controller(Protocol):
 
     It may have an attribute ``commands_voltages = True``: `step` then returns the voltages (V) that it wants, phase to
     the middle of the DC link, and the host divides by half of the link's voltage as sampled.
+
+    It may have an attribute ``switches = ("trip", "block")``, one or more of ``trip``, ``block`` and ``restart``:
+    `step` then returns their values behind the three, in that order, true or false. A trip opens the breaker for good,
+    with the controller named as the cause. A block turns no device of the bridge on, for as long as it is commanded; of
+    a controller that has a restart, until that is commanded and the block is not.
+
+    It may have an attribute ``every = 25`` and a method ``step_slow(measurements)``, called before `step` in its first
+    sample and every 25th after it: a slow task beside the fast one, at a whole multiple of the sample time.
 
     Keyword arguments of the class that have defaults are its parameters; without any, its public attributes that are
     numbers, words or switches. A parameter keeps the type of its default.

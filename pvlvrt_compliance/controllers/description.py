@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from pvlvrt_compliance.texts import one_line, printable
+
 Value = float | int | bool | str
 """Of a parameter."""
 
@@ -92,13 +94,19 @@ class Description:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> "Description":
-        """Back from plain dictionaries."""
+        """Back from plain dictionaries, which the process of a controller has made: names are lines of text then."""
         return cls(
             **{
                 **data,
-                "inputs": tuple(Port(**port) for port in data["inputs"]),
-                "outputs": tuple(Port(**port) for port in data["outputs"]),
-                "parameters": tuple(ParameterInfo(**parameter) for parameter in data["parameters"]),
-                "notes": tuple(data["notes"]),
+                "name": one_line(data["name"]),
+                "inputs": tuple(Port(**_in_lines(port)) for port in data["inputs"]),
+                "outputs": tuple(Port(**_in_lines(port)) for port in data["outputs"]),
+                "parameters": tuple(ParameterInfo(**_in_lines(parameter)) for parameter in data["parameters"]),
+                "notes": tuple(map(printable, data["notes"])),
+                "besides": printable(data["besides"] or ""),  # a door that has nothing to say may say so by None
             }
         )
+
+
+def _in_lines(said: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: one_line(value) if isinstance(value, str) else value for name, value in said.items()}

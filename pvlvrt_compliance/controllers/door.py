@@ -29,6 +29,8 @@ class DoorCall(NamedTuple):
     hold_address: int = 0  # called before it as long as the controller does not act yet; 0: none
     note_address: int = 0  # called after a function has returned 1; 0: that is a failure
     in_volts: bool = False  # whether the outputs command voltages
+    in_a_frame: bool = False  # whether they do so in a frame that turns
+    every: int = 1  # samples from one run of its slow task to the next
     recorded: tuple[str, ...] = ()  # names of the further signals, by which they are recorded
     notes: Sequence[str] = ()  # what the controller has to say; grows as it runs
 
@@ -103,4 +105,5 @@ def described(door: Door) -> Description:
     DoorError
         As of `Door.describe`.
     """
-    return replace(door.describe(), besides=door.besides(), may_be_listed=door.may_be_listed())
+    # A door that says nothing of it has the methods of the protocol, which give nothing.
+    return replace(door.describe(), besides=door.besides() or "", may_be_listed=bool(door.may_be_listed()))

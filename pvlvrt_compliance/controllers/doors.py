@@ -8,6 +8,8 @@ from pkgutil import iter_modules
 from pvlvrt_compliance import controllers
 from pvlvrt_compliance.controllers.description import Value
 from pvlvrt_compliance.controllers.door import Door, DoorError
+from pvlvrt_compliance.controllers.python.door import PythonDoor
+from pvlvrt_compliance.controllers.spelling import names_module
 
 
 def _listed() -> Iterator[type[Door]]:
@@ -28,7 +30,7 @@ def door_to(spec: str, given: Mapping[str, Value], mapping: str | None = None) -
     DoorError
         When no door fits, or there is nothing behind it.
     """
-    found = _by_scheme(spec) or _by_suffix(spec)
+    found = _by_scheme(spec) or _by_suffix(spec) or _by_module(spec)
     if found is None:
         *first, last = (door.written for door in DOORS)
         raise DoorError(f"not a kind of controller that is known; write {', '.join(first)} or {last}")
@@ -37,6 +39,11 @@ def door_to(spec: str, given: Mapping[str, Value], mapping: str | None = None) -
 
 def _by_scheme(spec: str) -> type[Door] | None:
     return next((door for door in DOORS if spec.startswith(door.schemes)), None)
+
+
+def _by_module(spec: str) -> type[Door] | None:
+    """By being written as a module and a class, ``pkg.module:Class``, which only Python has."""
+    return PythonDoor if names_module(spec) else None
 
 
 def _by_suffix(spec: str) -> type[Door] | None:

@@ -11,6 +11,7 @@ from pvlvrt_compliance.controllers.description import ParameterInfo, Value
 from pvlvrt_compliance.controllers.door import DoorError
 from pvlvrt_compliance.errors import did_you_mean
 from pvlvrt_compliance.simulation.parameters import OF_THE_HOST
+from pvlvrt_compliance.texts import shortened
 
 Range = tuple[float, float]
 """Smallest and largest number."""
@@ -167,7 +168,7 @@ def _written(value: Value) -> str:
 def _shown(value: Value) -> str:
     """A value in a message; a text is in quotes, a long one shortened."""
     text = reprlib.repr(value) if isinstance(value, str) else _written(value).removesuffix(".0")
-    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
+    return shortened(text, _LONGEST)
 
 
 def _range(low: float, high: float) -> str:

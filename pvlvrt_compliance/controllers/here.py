@@ -14,17 +14,18 @@ from threading import Event
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pvlvrt_compliance.controllers.description import Description, Value
 from pvlvrt_compliance.controllers.door import DoorError, described
+from pvlvrt_compliance.controllers.limits import Limits
 from pvlvrt_compliance.controllers.process.worker import RunJob
 from pvlvrt_compliance.controllers.python.door import PythonDoor
-from pvlvrt_compliance.controllers.run import run_through
+from pvlvrt_compliance.controllers.run import ForeignRecord, run_through
 from pvlvrt_compliance.controllers.simulator import ForeignSimulator
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.simulation.door.exchange import PROGRESSES
 from pvlvrt_compliance.simulation.door.native_call import FAILED
+from pvlvrt_compliance.simulation.parameters import Parameters
 
 Factory = Callable[..., Any]
 
@@ -91,18 +92,17 @@ class SimulatorHere(ForeignSimulator):
     def _door(self) -> PythonDoor:
         return _DoorHere(self._made, self.given, self._stopped)
 
-    def _describe(self) -> Description:
+    def _describe(self, parameters: Parameters) -> Description:
+        del parameters  # a thread has no limits
         try:
             return described(self._door())
         except DoorError as error:
             raise UsageError(f"controller {self.spec}: {error}") from None
 
-    def _run(self, job: RunJob, limit_s: float) -> tuple[dict[str, Any], NDArray[np.float64]]:
-        del limit_s  # a thread cannot be ended from outside
+    def _run(self, job: RunJob, limits: Limits) -> ForeignRecord:
+        del limits
         progress = np.full(PROGRESSES, np.nan)
-        record = run_through(self._door(), job.scenario, job.parameters, job.plan, progress, after_trip=job.after_trip)
-        said = {"channels": record.channels, "notes": record.notes, "tripped_at_s": record.tripped_at_s}
-        return said, record.samples
+        return run_through(self._door(), job.scenario, job.parameters, job.plan, progress, after_trip=job.after_trip)
 
 
 class _DoorHere(PythonDoor):

@@ -16,6 +16,7 @@ from pvlvrt_compliance.simulation import outcome
 from pvlvrt_compliance.simulation.columns import RECORDED
 from pvlvrt_compliance.simulation.door.blocks import MODULATING, VOLTAGES, port_table, real_block
 from pvlvrt_compliance.simulation.door.exchange import (
+    COMMAND,
     COMMANDS,
     IGNORED_AT,
     IGNORED_STATUS,
@@ -23,11 +24,12 @@ from pvlvrt_compliance.simulation.door.exchange import (
     PROGRESSES,
     SIGNALS,
 )
-from pvlvrt_compliance.simulation.door.table import DoorTable, Timing
+from pvlvrt_compliance.simulation.door.table import HELD_EACH, HELD_ONCE, RUNS_FREE, DoorTable, Timing
 from pvlvrt_compliance.simulation.electronics import hardware_of
 from pvlvrt_compliance.simulation.loop import run
 from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.recorder import RecordingPlan, every_period
+from pvlvrt_compliance.simulation.told import Told, told_of
 from pvlvrt_compliance.simulation.translate import (
     controller_params,
     nominal_of,
@@ -35,7 +37,6 @@ from pvlvrt_compliance.simulation.translate import (
     plant_tables,
     steady_state,
 )
-from pvlvrt_compliance.units import Nominal
 
 SETTLING_S = 1.0
 """Unrecorded time of a controller from outside, unless it is set (s): it starts at rest."""
@@ -73,6 +74,9 @@ def settling_samples(parameters: Parameters, rates: Rates) -> int:
     return not_below(settling_s_of(parameters) / rates.sample_time_s)
 
 
+_HOLD = {"each": HELD_EACH, "once": HELD_ONCE, "run": RUNS_FREE}
+
+
 def timing_of(parameters: Parameters, rates: Rates, sample_time_s: float) -> Timing:
     """When the relays are armed and the controller sees something, in whole sample times."""
     return Timing(
@@ -80,6 +84,7 @@ def timing_of(parameters: Parameters, rates: Rates, sample_time_s: float) -> Tim
         ratio=rates.periods,
         held=not_below(parameters.simulation.synchronising_s / rates.sample_time_s),
         sample_time=sample_time_s,
+        hold=_HOLD[parameters.controller.hold],
     )
 
 
@@ -122,7 +127,7 @@ def run_through(
     nominal = nominal_of(parameters, scenario)
     opened = door.open(nominal)
     try:
-        table = door_table(opened, nominal, controller.lvrt.Q_set, timing, progress, after_trip=after_trip)
+        table = door_table(opened, told_of(scenario, parameters, tables), timing, progress, after_trip=after_trip)
         samples = np.empty((sum(plan.rows), len(RECORDED) + len(opened.recorded)))
         hardware = hardware_of(parameters, start, calls)
         ended = run(start.plant, None, start.m, first, plant, tables, None, hardware, table, plan, samples)
@@ -141,24 +146,17 @@ def run_through(
 
 def door_table(
     opened: DoorCall,
-    nominal: Nominal,
-    q_set_var: float,
+    told: Told,
     timing: Timing,
     progress: NDArray[np.float64],
     *,
     after_trip: bool = True,
 ) -> DoorTable:
-    """An open door as the loop has it, for an inverter of this rating and this set-point of reactive power (var)."""
+    """An open door as the loop has it, told what it is of its plant."""
     signals = np.zeros(len(SIGNALS))
-    constant = {
-        "p_set_w": nominal.apparent_power_va,
-        "q_set_var": q_set_var,
-        "frequency_nominal_hz": nominal.frequency_hz,
-        "apparent_power_nominal_va": nominal.apparent_power_va,
-        "voltage_nominal_v": nominal.phase_voltage_v,
-    }
-    for name, value in constant.items():
+    for name, value in told.fixed.items():
         signals[SIGNALS.index(name)] = value
+    given = {element.signal for element in opened.outputs.elements}
     return DoorTable(
         address=opened.address,
         first_address=opened.first_address,
@@ -168,10 +166,14 @@ def door_table(
         inputs=port_table(opened.inputs),
         outputs=port_table(opened.outputs),
         in_volts=opened.in_volts,
+        in_a_frame=opened.in_a_frame,
+        latches=COMMAND.restart in given,
         after_trip=after_trip,
         signals=signals,
         commands=np.zeros(len(COMMANDS) + len(opened.recorded)),
-        timing=timing,
+        available=told.available,
+        irradiance=told.irradiance,
+        timing=timing._replace(every=opened.every),
         progress=progress,
     )
 
@@ -208,6 +210,6 @@ def warm_up() -> None:
     start = steady_state(plant, tables.grid, controller_params(parameters, scenario), scenario, 0.0)
     opened = DoorCall(address=0, argument=0, inputs=real_block([]), outputs=real_block([]))
     timing = Timing(armed=0, ratio=1, held=0, sample_time=1.0)
-    door = door_table(opened, Nominal(), 0.0, timing, np.zeros(PROGRESSES))
+    door = door_table(opened, told_of(scenario, parameters, tables), timing, np.zeros(PROGRESSES))
     samples = np.empty((0, len(RECORDED)))
     run(start.plant, None, start.m, 0, plant, tables, None, None, door, every_period(0), samples)

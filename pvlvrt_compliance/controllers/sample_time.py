@@ -4,10 +4,12 @@ import math
 from typing import NamedTuple
 
 from pvlvrt_compliance.errors import UsageError
-from pvlvrt_compliance.simulation.parameters import Parameters, SimulationParameters
-
-SHORTEST_S, LONGEST_S = 1e-6, 0.1
-"""Range of sample times (s)."""
+from pvlvrt_compliance.simulation.parameters import (
+    LONGEST_PERIOD_S,
+    SHORTEST_PERIOD_S,
+    Parameters,
+    SimulationParameters,
+)
 
 _DEFAULT_STEP_US = SimulationParameters.model_fields["plant_step_us"].default
 _PERIOD_US = _DEFAULT_STEP_US * SimulationParameters.model_fields["control_ratio"].default  # of a record, at most
@@ -51,9 +53,10 @@ def rates_of(sample_time_s: float, parameters: Parameters) -> Rates:
     UsageError
         When the sample time is out of range, or the fixed step is not a whole part of it, with the nearest that are.
     """
-    if not (math.isfinite(sample_time_s) and SHORTEST_S <= sample_time_s <= LONGEST_S):
+    if not (math.isfinite(sample_time_s) and SHORTEST_PERIOD_S <= sample_time_s <= LONGEST_PERIOD_S):
         raise UsageError(
-            f"the controller's sample time is {sample_time_s:g} s; it must be from {SHORTEST_S:g} s to {LONGEST_S:g} s"
+            f"the controller's sample time is {sample_time_s:g} s; it must be from"
+            f" {SHORTEST_PERIOD_S:g} s to {LONGEST_PERIOD_S:g} s"
         )
     sample_us = 1e6 * sample_time_s
     switched = parameters.simulation.fidelity == "switched"

@@ -7,16 +7,20 @@ from pathlib import Path
 from threading import Event
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from pvlvrt_compliance.controllers.description import Description, Value
+from pvlvrt_compliance.controllers.limits import (
+    Limits,
+    allowing_more,
+    limits_of_opening,
+    limits_of_run,
+    with_limit_named,
+)
 from pvlvrt_compliance.controllers.mapping.commands import missing_commands, missing_words
 from pvlvrt_compliance.controllers.mapping.file import load_mapping
-from pvlvrt_compliance.controllers.process.isolation import RECORD, Ended, do_apart, stop_apart
+from pvlvrt_compliance.controllers.process.isolation import Ended, do_apart, stop_apart
 from pvlvrt_compliance.controllers.process.worker import DescribeJob, RunJob
 from pvlvrt_compliance.controllers.program.link import TCP
-from pvlvrt_compliance.controllers.run import IGNORED_WORDS, settling_s_of, when
+from pvlvrt_compliance.controllers.run import IGNORED_WORDS, ForeignRecord, settling_s_of, when
 from pvlvrt_compliance.controllers.sample_time import rates_of
 from pvlvrt_compliance.errors import SimulationError, UsageError
 from pvlvrt_compliance.scenario.scenario import Scenario
@@ -25,9 +29,6 @@ from pvlvrt_compliance.simulation.recorder import RecordingPlan
 from pvlvrt_compliance.simulation.simulate import record_of, recorded
 from pvlvrt_compliance.simulation.surroundings import playback_table
 from pvlvrt_compliance.waveforms import Waveforms
-
-_OPENING_LIMIT_S = 60.0
-_LIMIT_S, _LIMIT_PER_S = 60.0, 20.0  # of computing, and more of it for every second of the record
 
 
 class ForeignSimulator:
@@ -45,6 +46,8 @@ class ForeignSimulator:
         What it has said of itself, where it was opened before: every run holds it to that.
     beside : str, optional
         Folder that relative names start from; by default the working folder.
+    parameters : Parameters, optional
+        Of the runs to come; the limits among them hold while it is opened.
 
     Raises
     ------
@@ -59,6 +62,7 @@ class ForeignSimulator:
         mapping: str | None = None,
         description: Description | None = None,
         beside: str | None = None,
+        parameters: Parameters | None = None,
     ) -> None:
         self.spec = spec
         self._beside = beside
@@ -67,7 +71,7 @@ class ForeignSimulator:
         self.last_notes: list[str] = []  # the same of the last run alone
         self._mapping = mapping
         self._stopped = Event()
-        self.description = description or self._describe()
+        self.description = description or self._describe(parameters or Parameters())
         if loose := self.loose_inputs():
             self.notes.append(f"tied to nothing and left as the controller has them: inputs {', '.join(loose)}")
 
@@ -95,14 +99,14 @@ class ForeignSimulator:
         rates = rates_of(self.description.sample_time_s, parameters)
         period_s = rates.sample_time_s / rates.periods
         row_s = rates.thinning * period_s
-        limit_s = parameters.simulation.time_limit_s or _LIMIT_S + _LIMIT_PER_S * scenario.end_s
+        limits = limits_of_run(parameters.simulation, scenario.end_s)
 
         def make(plan: RecordingPlan) -> Waveforms:
             in_periods = RecordingPlan(first=rates.thinning * plan.first, step=rates.thinning * plan.step)
-            answer, samples = self._run(job_of(in_periods), limit_s)
-            self.last_notes += [note for note in answer["notes"] if note not in self.last_notes]
-            self.note(answer["notes"])
-            return record_of(samples, plan, row_s, answer["channels"], tripped_at_s=answer["tripped_at_s"])
+            record = self._run(job_of(in_periods), limits)
+            self.last_notes += [note for note in record.notes if note not in self.last_notes]
+            self.note(record.notes)
+            return record_of(record.samples, plan, row_s, record.channels, tripped_at_s=record.tripped_at_s)
 
         def job_of(plan: RecordingPlan) -> RunJob:
             return RunJob(
@@ -116,22 +120,22 @@ class ForeignSimulator:
         settling_s = settling_s_of(parameters) if parameters.simulation.record_settling else 0.0
         return recorded(scenario, playback_table(scenario), row_s, make, settling=int(settling_s / row_s))
 
-    def _run(self, job: RunJob, limit_s: float) -> tuple[dict[str, Any], NDArray[np.float64]]:
-        """Answer and samples of a run. One whose process ends after a trip is run anew, its controller left alone then.
+    def _run(self, job: RunJob, limits: Limits) -> ForeignRecord:
+        """Record of a run. One whose process ends after a trip is run anew, its controller left alone then.
 
         Raises
         ------
         SimulationError
-            When there is no answer, or it is an error.
+            When there is none.
         """
         if self._stopped.is_set():
             raise SimulationError("the run was stopped")
-        ended, arrays = do_apart(job, limit_s, keep=[RECORD])
+        rows = sum(job.plan.rows)
+        ended = do_apart(job, limits, rows)
         if ended.answer is not None or ended.tripped_s is None or self._stopped.is_set():
-            return _answer_of(ended), arrays[RECORD]
-        again, arrays = do_apart(replace(job, after_trip=False), limit_s, keep=[RECORD])
-        answer = _answer_of(again)
-        return {**answer, "notes": [*answer["notes"], f"{IGNORED_WORDS}: {_end_in_words(ended)}"]}, arrays[RECORD]
+            return _record_of(ended, limits)
+        record = _record_of(do_apart(replace(job, after_trip=False), limits, rows), limits)
+        return record._replace(notes=(*record.notes, f"{IGNORED_WORDS}: {_end_in_words(ended)}"))
 
     def stop(self) -> None:
         """End the run that may be under way in another thread: nobody waits for it any more."""
@@ -198,15 +202,14 @@ class ForeignSimulator:
             "computation_delay_samples": parameters.controller.computation_delay_samples,
         }
 
-    def _describe(self) -> Description:
-        ended, _ = do_apart(
-            DescribeJob(self.spec, self.given, self._mapping, self._beside or str(Path.cwd())), _OPENING_LIMIT_S
-        )
-        if ended.answer is None:
-            raise UsageError(f"--controller {self.spec}: {_with_said(ended.reason, ended)}")
-        if "error" in ended.answer:
-            raise UsageError(f"--controller {self.spec}: {_with_said(ended.answer['error'], ended)}")
-        return Description.from_json(ended.answer["description"])
+    def _describe(self, parameters: Parameters) -> Description:
+        job = DescribeJob(self.spec, self.given, self._mapping, self._beside or str(Path.cwd()))
+        limits = limits_of_opening(parameters.simulation)
+        ended = do_apart(job, limits)
+        if ended.answer is not None and ended.answer.description is not None:
+            return ended.answer.description
+        why = f"{ended.reason}{_advice(ended)}" if ended.answer is None else str(ended.answer.head.error)
+        raise UsageError(f"--controller {self.spec}: {_with_said(why, ended, limits)}")
 
 
 def _mapping_provenance(mapping: str) -> dict[str, str]:
@@ -214,26 +217,32 @@ def _mapping_provenance(mapping: str) -> dict[str, str]:
     return {"controller_mapping": mapping, "controller_mapping_digest": digest}
 
 
-def _answer_of(ended: Ended) -> dict[str, Any]:
-    """Answer of a run.
+def _record_of(ended: Ended, limits: Limits) -> ForeignRecord:
+    """Record of a run.
 
     Raises
     ------
     SimulationError
-        When there is none, or it is an error.
+        When there is none: its process has given no answer, or an error.
     """
     if ended.answer is None:
-        raise SimulationError(_with_said(_end_in_words(ended), ended))
-    if "error" in ended.answer:
-        raise SimulationError(_with_said(ended.answer["error"], ended))
-    return ended.answer
+        raise SimulationError(_with_said(_end_in_words(ended), ended, limits))
+    head, samples = ended.answer.head, ended.answer.samples
+    if samples is None or head.channels is None:
+        raise SimulationError(_with_said(str(head.error), ended, limits))
+    return ForeignRecord(head.channels, samples, head.notes, head.tripped_at_s)
 
 
 def _end_in_words(ended: Ended) -> str:
     """Why a process gave no answer, and when."""
     at = "while it was opened" if ended.progress_s is None else f"at {when(ended.progress_s)}"
-    return f"{ended.reason} {at}"
+    return f"{ended.reason} {at}{_advice(ended)}"
 
 
-def _with_said(text: str, ended: Ended) -> str:
-    return f"{text}\nit had printed: {ended.said}" if ended.said else text
+def _advice(ended: Ended) -> str:
+    return allowing_more(ended.limit) if ended.limit else ""
+
+
+def _with_said(text: str, ended: Ended, limits: Limits) -> str:
+    """What went wrong, with what the controller had printed, and the limit that either speaks of."""
+    return with_limit_named(f"{text}\nit had printed: {ended.said}" if ended.said else text, limits)

@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from pvlvrt_compliance.data.positions import Location
-from pvlvrt_compliance.data.syntax import CONTROL, DEEPEST, LARGEST_WHOLE_NUMBER, TOO_LARGE, Table
+from pvlvrt_compliance.data.syntax import DEEPEST, LARGEST_WHOLE_NUMBER, TOO_LARGE, Table
+from pvlvrt_compliance.texts import CONTROL
 
 _CONTROL_IN_A_TEXT = re.compile(rf"(?![\t\n]){CONTROL.pattern}")  # texts have lines, keys have not
 

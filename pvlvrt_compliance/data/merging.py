@@ -7,12 +7,15 @@ from typing import Any, NamedTuple
 
 from pvlvrt_compliance.data.positions import Location
 from pvlvrt_compliance.data.reader import Kind, Source
-from pvlvrt_compliance.data.search_path import SUFFIX, find_profile, is_path, known_profiles, origin_of
+from pvlvrt_compliance.data.search_path import SUFFIX, find_profile, has_suffix, is_path, known_profiles, origin_of
 from pvlvrt_compliance.data.syntax import Table
 from pvlvrt_compliance.errors import ProfileError, did_you_mean
 
 PROFILE = Kind("a profile", "profiles", ProfileError)
 
+
+MOST_FILES = 64
+"""Files that a profile may be made of, each as often as it is included: chosen, ten times what any ships with."""
 
 OWN = frozenset({"edition", "jurisdiction", "applies_to", "address", "read_on"})
 """What a file says of its own text alone: an including one is of another, and says it again or leaves it open."""
@@ -67,8 +70,12 @@ class Merged(NamedTuple):
 
     def describe(self, location: Location, text: str) -> str:
         """A problem of the resolved profile, told at the file, line and key that it comes from."""
-        source, place = max(reversed(self._places(location)), key=lambda found: _depth(*_within(*found)))
+        source, place = self.said_by(location)
         return source.problem(place, text)
+
+    def said_by(self, location: Location) -> tuple[Source, Location]:
+        """The file that a part of the resolved profile comes from, and where it stands there."""
+        return max(reversed(self._places(location)), key=lambda found: _depth(*_within(*found)))
 
     def _places(self, location: Location) -> list[tuple[Source, Location]]:
         """The same location as each file has it, the file that wins last."""
@@ -78,8 +85,10 @@ class Merged(NamedTuple):
         return [(source, location) for source in self.sources]
 
 
-def merge_file(path: Path, version: int, chain: tuple[Path, ...] = ()) -> Merged:
-    """Read a file and what it includes.
+def merge_file(
+    path: Path, version: int, chain: tuple[Path, ...] = (), known: dict[Path, Merged] | None = None
+) -> Merged:
+    """Read a file and what it includes, each file once.
 
     Parameters
     ----------
@@ -88,20 +97,30 @@ def merge_file(path: Path, version: int, chain: tuple[Path, ...] = ()) -> Merged
         The ``schema_version`` that each file must state.
     chain : tuple of Path
         The files that led here by their includes.
+    known : dict, optional
+        What has been read on the way, by its file; what is read is added.
 
     Raises
     ------
     ProfileError
-        When a file cannot be read or is not TOML, or an include leads nowhere or back.
+        When a file cannot be read or is not TOML, an include leads nowhere or back, or there are too many of them.
     """
+    known = {} if known is None else known
     source = Source(path, PROFILE, origin_of(path))
     here = path.resolve()
     merged = Merged((), {}, {}, ())
     for index, name in enumerate(_includes_of(source)):
         included = _included(name, source, index)
-        if included.resolve() in (*chain, here):
-            raise source.refusal((("include", index), _loop((*chain, here), included.resolve())))
-        merged = _joined(merged, merge_file(included, version, (*chain, here)))
+        resolved = included.resolve()
+        if resolved in (*chain, here):
+            raise source.refusal((("include", index), _loop((*chain, here), resolved)))
+        too_deep = len(chain) + 1 >= MOST_FILES
+        if not too_deep and resolved not in known:
+            known[resolved] = merge_file(included, version, (*chain, here), known)
+        if too_deep or len(merged.sources) + len(known[resolved].sources) >= MOST_FILES:
+            many = f"leads to more than {MOST_FILES} files, each counted as often as it is included"
+            raise source.refusal((("include", index), f"{name!r:.60} {many}"))
+        merged = _joined(merged, known[resolved])
     return _joined(*_without_dropped(merged, source, version))
 
 
@@ -119,6 +138,11 @@ def _includes_of(source: Source) -> list[str]:
 
 def _included(name: str, including: Source, index: int) -> Path:
     """File of an include: a bare name beside the including file or known, a path relative to the including file."""
+    if is_path(name) and not has_suffix(
+        name
+    ):  # whatever else others name is not opened: a problem shows keys of a file
+        allowed = f"must be the name of a profile, or the path of one, which ends in {SUFFIX}"
+        raise including.refusal((("include", index), f"{name!r:.60} {allowed}"))
     beside = including.path.parent / (name if is_path(name) else f"{name}{SUFFIX}")
     try:
         found = beside if beside.is_file() else None if is_path(name) else find_profile(name)
@@ -188,7 +212,7 @@ def _joined(base: Merged, over: Merged) -> Merged:
             each.key: _joined_rows(base.rows.get(each.key, ()), over.rows.get(each.key, ()), each.name)
             for each in _JOINED
         },
-        base.problems + over.problems,
+        tuple(dict.fromkeys(base.problems + over.problems)),
     )
 
 

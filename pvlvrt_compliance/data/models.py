@@ -6,7 +6,8 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from pvlvrt_compliance.data.positions import Location
-from pvlvrt_compliance.data.problems import problem_lines
+from pvlvrt_compliance.data.problems import dotted, problem_lines
+from pvlvrt_compliance.errors import UsageError
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -21,3 +22,18 @@ def validated(model: type[Model], table: dict[str, Any]) -> tuple[Model | None, 
         return model.model_validate_json(json.dumps(table, default=str), strict=True), []
     except ValidationError as error:
         return None, problem_lines(error, model, table)
+
+
+def made(model: type[Model], fields: dict[str, Any]) -> Model:
+    """A model of fields that are made from what has been read.
+
+    Raises
+    ------
+    UsageError
+        When one is unknown or out of its range; ``field: what is wrong`` of each.
+    """
+    try:
+        return model.model_validate(fields)
+    except ValidationError as error:
+        problems = (f"{dotted(location)}: {text}" for location, text in problem_lines(error, model))
+        raise UsageError("; ".join(problems)) from None

@@ -8,6 +8,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from pvlvrt_compliance.errors import did_you_mean
+from pvlvrt_compliance.texts import one_line, shortened
 
 Location = Sequence[int | str]
 
@@ -17,7 +18,15 @@ _WORDS = {
     "float_parsing": "must be a number",
     "finite_number": "must be a finite number",
     "int_type": "must be a whole number",
+    "int_from_float": "must be a whole number",
+    "int_parsing": "must be a whole number",
+    "int_parsing_size": "must be a whole number of a usual size",
     "bool_type": "must be true or false",
+    "bool_parsing": "must be true or false",
+    "date_type": "must be a date",
+    "date_parsing": "must be a date",
+    "date_from_datetime_parsing": "must be a date",
+    "json_invalid": "not JSON",
     "string_type": "must be a text",
     "string_too_short": "must not be empty",
     "tuple_type": "must be a list",
@@ -25,7 +34,8 @@ _WORDS = {
     "model_attributes_type": "must be a table",
     "dict_type": "must be a table",
 }
-_SHOW_INPUT = frozenset(_WORDS) - {"missing", "string_too_short"}
+_SHOW_INPUT = frozenset(_WORDS) - {"missing", "string_too_short", "json_invalid"}
+_OF_PYDANTIC = ("Input ", "String ")
 _LONGEST_INPUT = 60
 _LONGEST_KEY = 200
 
@@ -52,12 +62,9 @@ def dotted(location: Location) -> str:
     """Spell a location as ``tests[2].sag.depth``."""
     text = ""
     for part in location:
-        text += f"[{part}]" if isinstance(part, int) else f".{_short(part)}" if text else _short(part)
+        key = part if isinstance(part, int) else one_line(part, _LONGEST_KEY)
+        text += f"[{key}]" if isinstance(part, int) else f".{key}" if text else str(key)
     return text
-
-
-def _short(key: str) -> str:
-    return key if len(key) <= _LONGEST_KEY else f"{key[:_LONGEST_KEY]}..."
 
 
 def problem_lines(
@@ -114,8 +121,15 @@ def _in_words(problem: Any, model: type[BaseModel]) -> str:
         return _unknown_kind(**problem["ctx"], known=known_kinds(model, location))
     if kind in {"too_short", "too_long"} and "actual_length" in problem["ctx"]:
         return _length(**problem["ctx"])
-    words = _WORDS.get(kind) or problem["msg"].removeprefix("Input ").replace("should", "must", 1)
+    words = _WORDS.get(kind) or _own_words(problem["msg"])
     return f"{words}, not {_shown(problem['input'])}" if kind not in _WORDS or kind in _SHOW_INPUT else words
+
+
+def _own_words(message: str) -> str:
+    """What pydantic says, as the rest is said."""
+    for subject in _OF_PYDANTIC:
+        message = message.removeprefix(subject)
+    return message.replace("should", "must", 1)
 
 
 def _length(actual_length: int | None, min_length: int = 0, max_length: int | None = None, **_: Any) -> str:
@@ -124,8 +138,7 @@ def _length(actual_length: int | None, min_length: int = 0, max_length: int | No
 
 
 def _shown(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= _LONGEST_INPUT else f"{text[:_LONGEST_INPUT]}..."
+    return shortened(repr(value), _LONGEST_INPUT)
 
 
 def _unknown_key(key: str, known: Iterable[str]) -> str:

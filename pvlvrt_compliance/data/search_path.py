@@ -2,12 +2,15 @@
 
 import os
 from collections.abc import Iterator
-from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from pvlvrt_compliance.data.announced import announced
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.resources import resource_folder
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 VARIABLE = "PVLVRT_PROFILES"
 ENTRY_POINT_GROUP = "pvlvrt_compliance.profiles"
@@ -26,7 +29,12 @@ class Known(NamedTuple):
 
 def is_path(text: str) -> bool:
     """Whether a text names a file rather than a profile: by its ending, or because it has a separator."""
-    return text.lower().endswith(_SUFFIXES_OF_PATHS) or "/" in text or "\\" in text
+    return has_suffix(text) or "/" in text or "\\" in text
+
+
+def has_suffix(text: str) -> bool:
+    """Whether a path ends as one of a profile may, though written in another language."""
+    return text.lower().endswith(_SUFFIXES_OF_PATHS)
 
 
 def known_profiles() -> dict[str, Known]:
@@ -72,7 +80,7 @@ def origin_of(path: Path) -> str:
 def _folders() -> Iterator[tuple[str, Path]]:
     yield from _folders_of_the_user()
     yield SHIPPED, resource_folder("profiles")
-    for entry in sorted(entry_points(group=ENTRY_POINT_GROUP), key=lambda entry: entry.name):
+    for entry in announced(ENTRY_POINT_GROUP):
         origin = f"package {entry.dist.name}" if entry.dist else f"entry point {entry.name}"
         yield origin, _folder_of(entry)
 
@@ -85,16 +93,16 @@ def _folders_of_the_user() -> Iterator[tuple[str, Path]]:
         yield text, folder
 
 
-def _folder_of(entry: EntryPoint) -> Path:
+def _folder_of(entry: "EntryPoint") -> Path:
     """Folder that an entry point announces: that of its package or module, or what its function returns."""
     try:
-        announced: Any = entry.load()
-        if callable(announced):
-            folder = Path(announced())
-        elif announced.__file__ is not None:
-            folder = Path(announced.__file__).parent
+        beside: Any = entry.load()
+        if callable(beside):
+            folder = Path(beside())
+        elif beside.__file__ is not None:
+            folder = Path(beside.__file__).parent
         else:
-            folder = Path(next(iter(announced.__path__)))  # a folder without __init__.py
+            folder = Path(next(iter(beside.__path__)))  # a folder without __init__.py
     except Exception as error:  # whatever another package raises
         raise UsageError(f"profiles of entry point {entry.name!r} ({entry.value}): {error}") from None
     if not folder.is_dir():

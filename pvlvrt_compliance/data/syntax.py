@@ -8,6 +8,7 @@ from typing import Any
 from pvlvrt_compliance.data.positions import TOKEN, last_key
 from pvlvrt_compliance.data.problems import dotted
 from pvlvrt_compliance.data.text import UnreadableError
+from pvlvrt_compliance.texts import shortened
 
 Table = dict[str, Any]
 
@@ -20,9 +21,6 @@ LARGEST_WHOLE_NUMBER = 2**63 - 1
 TOO_DEEP = f"nested too deeply, more than {DEEPEST} levels"
 TOO_LARGE = "a whole number of more than 64 bits, which TOML does not have"
 
-CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\ufffe\uffff]")
-"""What a terminal would act on when it is shown, and what XML cannot hold."""
-
 # tomllib takes time in the square of the number of parts of a key.
 _PART = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
 _LONG_KEY = re.compile(rf"(?:^|(?<=[\s\[{{,]))(?:{_PART}[ \t]*+\.[ \t]*+){{{DEEPEST}}}")
@@ -31,7 +29,7 @@ _KEY_ON_LINE = re.compile(r"""\s*+(?:\[{1,2}\s*+)?((?:[\w.-]|"[^"]*"|'[^']*')+)\
 _YAML_LINE = re.compile(r"(?:---|%YAML|- |[\w-]+:(?:\s|$))")
 _WHOLE_NUMBER = re.compile(r"[+-]?[0-9_]{19,}")
 _AFTER_A_KEY = re.compile(r"[ \t]*[=.]")
-_LONGEST_MESSAGE = 300
+_LONGEST_MESSAGE = 300  # of tomllib, which repeats names of any length
 _OPENS = {"[": 1, "{": 1, "]": -1, "}": -1}
 
 
@@ -101,14 +99,9 @@ def _syntax_error(text: str, message: str, plural: str) -> UnreadableError:
     lines = text.removesuffix("\n").split("\n")
     line = min(int(place[1]) if place and place[1] else len(lines), len(lines))
     key = _KEY_ON_LINE.match(lines[line - 1])
-    known = f"{dotted((CONTROL.sub('?', key[1]),))}: " if key else ""
+    known = f"{dotted((key[1],))}: " if key else ""
     twice = ": a key or table that is there already" if "overwrite" in message or "twice" in message else ""
-    return UnreadableError(f"{known}not TOML{twice}: {_shortened(message)}", line if place else 1)
-
-
-def _shortened(message: str) -> str:
-    """What tomllib says, which repeats names of any length."""
-    return message if len(message) <= _LONGEST_MESSAGE else f"{message[:_LONGEST_MESSAGE]}..."
+    return UnreadableError(f"{known}not TOML{twice}: {shortened(message, _LONGEST_MESSAGE)}", line if place else 1)
 
 
 def _other_language(text: str) -> str | None:

@@ -2,6 +2,7 @@
 
 import cmath
 import math
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
@@ -15,10 +16,10 @@ from pvlvrt_compliance.disturbance.model import (
     Voltage,
     kind_of,
 )
-from pvlvrt_compliance.disturbance.words import facts_of, in_words, state_in_words, stretch_in_words
-from pvlvrt_compliance.scenario.events import FrequencyRamp, FrequencyStep, FurtherSag, Harmonic, PhaseJump, Recording
+from pvlvrt_compliance.disturbance.words import facts_of, in_words, state_in_words, stretches_in_words
+from pvlvrt_compliance.scenario.events import FrequencyRamp, FrequencyStep, Harmonic, PhaseJump, Recording
 from pvlvrt_compliance.scenario.scenario import Scenario
-from pvlvrt_compliance.scenario.timeline import Entry, entries, irradiance_points
+from pvlvrt_compliance.scenario.timeline import Entry, entries, irradiance_points, sag_spans
 from pvlvrt_compliance.space_vectors import Sequences, fortescue, phases
 
 Given = Disturbance | Scenario
@@ -48,7 +49,7 @@ def disturbance_asked(scenario: Scenario, normal: NormalVoltage) -> Disturbance:
         record_end_s=scenario.end_s,
         normal=normal,
         steps=steps,
-        jumps=tuple(_jump(table, step.at_s) for step in steps if "angle" in step.moved),
+        jumps=tuple(_jumps(table, [step.at_s for step in steps if "angle" in step.moved])),
         stretches=tuple(_stretches(scenario, table, [step.at_s for step in steps], normal)),
         frequency_moves=any(isinstance(event, FrequencyStep | FrequencyRamp | Recording) for event in scenario.events),
         irradiance_w_m2=(irradiance[0][1], irradiance[-1][1]),
@@ -95,12 +96,8 @@ def _angle_steps_s(scenario: Scenario) -> set[float]:
     """Instants at which an angle of the voltage asked for is meant to jump."""
     start_s = scenario.start_s
     jumps = {start_s + event.t_s for event in scenario.events if isinstance(event, PhaseJump) and event.angle_deg}
-    sags = [(start_s, scenario.clear_s, scenario.sag)]
-    for event in scenario.events:
-        if isinstance(event, FurtherSag):
-            begin_s = start_s + event.t_s  # added up as the timeline does, to the last bit
-            sags.append((begin_s, begin_s + event.duration_s, event.sag))
-    return jumps | {t for begin_s, end_s, sag in sags if sag.angle_deg for t in (begin_s, end_s)}
+    turns = {t for span in sag_spans(scenario) if span.item.angle_deg for t in (span.begin_s, span.end_s)}
+    return jumps | turns
 
 
 def _voltage_moves(before: Entry, after: Entry) -> bool:
@@ -120,32 +117,42 @@ def _sequences_at(entry: Entry, t_s: float) -> Sequences:
     return Sequences(*(u + slope * dt for u, slope in zip(entry.sequences_pu, entry.slope_pu_s, strict=True)))
 
 
-def _jump(table: list[Entry], at_s: float) -> Jump:
-    after = next(k for k, entry in enumerate(table) if entry.t_s == at_s)
-    before = table[after - 1]
-    dt = at_s - before.t_s
-    turned = 2 * math.pi * (before.frequency_hz * dt + 0.5 * before.rocof_hz_s * dt**2)
-    turn = cmath.rect(1, table[after].angle_rad - before.angle_rad - turned)
-    last = phases(*_sequences_at(before, at_s))
-    then = [turn * u for u in phases(*table[after].sequences_pu)]
-    of_phases = [math.degrees(cmath.phase(b * a.conjugate())) for a, b in zip(last, then, strict=True)]
-    positive = complex(fortescue(*then)[0]) * complex(fortescue(*last)[0]).conjugate()
-    return Jump(at_s=at_s, positive_deg=math.degrees(cmath.phase(positive)), phase_deg=max(of_phases, key=abs))
+def _jumps(table: list[Entry], instants_s: Sequence[float]) -> Iterator[Jump]:
+    place = {entry.t_s: k for k, entry in enumerate(table)}
+    for at_s in instants_s:
+        before, after = table[place[at_s] - 1], table[place[at_s]]
+        dt = at_s - before.t_s
+        turned = 2 * math.pi * (before.frequency_hz * dt + 0.5 * before.rocof_hz_s * dt**2)
+        turn = cmath.rect(1, after.angle_rad - before.angle_rad - turned)
+        last = phases(*_sequences_at(before, at_s))
+        then = [turn * u for u in phases(*after.sequences_pu)]
+        of_phases = [math.degrees(cmath.phase(b * a.conjugate())) for a, b in zip(last, then, strict=True)]
+        positive = complex(fortescue(*then)[0]) * complex(fortescue(*last)[0]).conjugate()
+        yield Jump(at_s=at_s, positive_deg=math.degrees(cmath.phase(positive)), phase_deg=max(of_phases, key=abs))
 
 
 def _stretches(
     scenario: Scenario, table: list[Entry], steps_s: list[float], normal: NormalVoltage
 ) -> Iterator[Stretch]:
     last_s = max([scenario.end_s, *steps_s])
-    bounds = [min([0.0, *steps_s]), *steps_s, last_s]
-    irradiance = irradiance_points(scenario)
-    for begin_s, end_s in pairwise(dict.fromkeys(bounds)):
-        entry = next(entry for entry in reversed(table) if entry.t_s <= begin_s)
+    bounds = list(dict.fromkeys([min([0.0, *steps_s]), *steps_s, last_s]))
+    instants = [entry.t_s for entry in table]
+    irradiance = _Irradiance(irradiance_points(scenario))
+    told = stretches_in_words(scenario, bounds[:-1])
+    played_from_s = _played_from_s(scenario)
+    for (begin_s, end_s), in_words_of_what_begins in zip(pairwise(bounds), told, strict=True):
+        entry = table[bisect_right(instants, begin_s) - 1]
         first = _voltage(_sequences_at(entry, begin_s))
         last = _voltage(_sequences_at(entry, end_s)) if any(entry.slope_pu_s) else None
         frequency_hz = entry.frequency_hz + entry.rocof_hz_s * (begin_s - entry.t_s)
         kind = kind_of(normal, first, last)
         other_hz = None if math.isclose(frequency_hz, scenario.frequency_hz) else frequency_hz
+        ramps: tuple[tuple[Moved, bool], ...] = (
+            ("voltage", any(entry.slope_pu_s)),
+            ("frequency", bool(entry.rocof_hz_s)),
+            ("irradiance", irradiance.moves_between(begin_s, end_s)),
+            ("recording", played_from_s <= begin_s),
+        )
         yield Stretch(
             begin_s=begin_s,
             end_s=end_s,
@@ -154,32 +161,37 @@ def _stretches(
             voltage_at_end=last,
             frequency_hz=frequency_hz,
             rocof_hz_s=entry.rocof_hz_s,
-            irradiance_w_m2=_irradiance_at(irradiance, begin_s),
-            ramps=tuple(_ramps(scenario, entry, irradiance, begin_s, end_s)),
-            in_words=stretch_in_words(scenario, begin_s) or state_in_words(kind, first, last, other_hz),
+            irradiance_w_m2=irradiance.at(begin_s),
+            ramps=tuple(what for what, moves in ramps if moves),
+            in_words=in_words_of_what_begins or state_in_words(kind, first, last, other_hz),
         )
 
 
-def _irradiance_at(points: Sequence[tuple[float, float]], t_s: float) -> float:
-    """Irradiance at an instant (W/m2): straight lines between points, of two at one instant the later."""
-    before = [point for point in points if point[0] <= t_s] or [points[0]]
-    after = next((point for point in points if point[0] > t_s), before[-1])
-    (begin_s, first), (end_s, last) = before[-1], after
-    return first if end_s <= begin_s else first + (last - first) * (t_s - begin_s) / (end_s - begin_s)
+def _played_from_s(scenario: Scenario) -> float:
+    """From when on (s) a recording takes the place of the source, which may hold anything."""
+    begins_s = (scenario.start_s + event.t_s for event in scenario.events if isinstance(event, Recording))
+    return min(begins_s, default=math.inf)
 
 
-def _ramps(
-    scenario: Scenario, entry: Entry, irradiance: Sequence[tuple[float, float]], begin_s: float, end_s: float
-) -> Iterator[Moved]:
-    """What moves all along a stretch; a recording may hold anything."""
-    if any(entry.slope_pu_s):
-        yield "voltage"
-    if entry.rocof_hz_s:
-        yield "frequency"
-    if any(t < end_s and begin_s < until_s and first != last for (t, first), (until_s, last) in pairwise(irradiance)):
-        yield "irradiance"
-    if any(isinstance(event, Recording) and scenario.start_s + event.t_s <= begin_s for event in scenario.events):
-        yield "recording"
+class _Irradiance:
+    """Points (s, W/m2) in order of time, joined by straight lines; of two at one instant the later counts."""
+
+    def __init__(self, points: Sequence[tuple[float, float]]) -> None:
+        self._points = points
+        self._instants_s = [t for t, _ in points]
+        self._ramps_s = [(t, until_s) for (t, first), (until_s, last) in pairwise(points) if first != last]
+        self._ends_s = [until_s for _, until_s in self._ramps_s]
+
+    def at(self, t_s: float) -> float:
+        """Irradiance at an instant (W/m2)."""
+        k = max(bisect_right(self._instants_s, t_s), 1)
+        (begin_s, first), (end_s, last) = self._points[k - 1], self._points[min(k, len(self._points) - 1)]
+        return first if end_s <= begin_s else first + (last - first) * (t_s - begin_s) / (end_s - begin_s)
+
+    def moves_between(self, begin_s: float, end_s: float) -> bool:
+        """Whether it moves anywhere between two instants (s)."""
+        k = bisect_right(self._ends_s, begin_s)
+        return k < len(self._ramps_s) and self._ramps_s[k][0] < end_s
 
 
 def _voltage(sequences: Sequences) -> Voltage:

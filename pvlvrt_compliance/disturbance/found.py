@@ -1,11 +1,12 @@
 """The disturbance that a record shows: of a measured one, for which nobody says what the grid was asked to do."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
+from pvlvrt_compliance.disturbance.departures import departure_s
 from pvlvrt_compliance.disturbance.model import (
     Disturbance,
     Fact,
@@ -68,8 +69,9 @@ class _Seen(NamedTuple):
 def disturbance_found(waveforms: Waveforms, nominal: Nominal, thresholds: Thresholds) -> Disturbance:
     """Find what the grid did from the voltages of a record, without the inverter's current where it has them.
 
-    Voltages are those of the cycle that ends at each sample, so that a step is found up to a cycle late, and slow ramps
-    (under ``step_pu`` a cycle) are levels. Sags and swells are those of `measure.events`.
+    Voltages are those of the cycle that ends at each sample, which show a step up to a cycle late; its instant is that
+    at which a phase leaves what it was a cycle before (`departure_s`). Slow ramps (under ``step_pu`` a cycle) are
+    levels. Sags and swells are those of `measure.events`.
 
     Parameters
     ----------
@@ -86,7 +88,7 @@ def disturbance_found(waveforms: Waveforms, nominal: Nominal, thresholds: Thresh
     """
     seen = _series(waveforms, nominal, thresholds)
     events = _events(seen, thresholds)
-    found, jumps = _steps(seen, events, thresholds)
+    found, jumps = _steps(seen, events, thresholds, _departures(waveforms, nominal))
     if not found:
         raise MeasurementError(
             "the record holds no disturbance: no step of the voltage, of its angle or of the frequency"
@@ -141,7 +143,7 @@ def _beyond(stretches: tuple[Stretch, ...], at_s: float) -> bool:
 
 def _series(waveforms: Waveforms, nominal: Nominal, thresholds: Thresholds) -> _Seen:
     floor_v = thresholds.voltage_floor_pu * nominal.phase_voltage_peak_v
-    kind = "u0" if "u0_a_v" in waveforms.names else "u"
+    kind = _kind(waveforms)
 
     def phasors(segment: Segment) -> Samples:
         found: Samples = np.stack(sequence_phasors(segment, kind, nominal.frequency_hz))
@@ -151,14 +153,26 @@ def _series(waveforms: Waveforms, nominal: Nominal, thresholds: Thresholds) -> _
         return tracked_frequency(segment, nominal.frequency_hz, kind, floor_v)
 
     found = np.concatenate(one_cycle_series(waveforms, phasors, nominal.frequency_hz), axis=-1)
+    frequency_hz = np.concatenate(one_cycle_series(waveforms, frequency, nominal.frequency_hz, 4), axis=-1)
+    frequency_hz[np.abs(found[0]) < floor_v] = np.nan  # what is followed there is the edge of the sag, held
     return _Seen(
         t_s=np.concatenate([segment.t_s for segment in waveforms]),
         sequences_pu=np.abs(found) / nominal.phase_voltage_peak_v,
         phases_pu=np.abs(np.stack(phases(*found))) / nominal.phase_voltage_peak_v,
         positive=found[0],
-        frequency_hz=np.concatenate(one_cycle_series(waveforms, frequency, nominal.frequency_hz, 4), axis=-1),
+        frequency_hz=frequency_hz,
         cycle_s=1 / nominal.frequency_hz,
     )
+
+
+def _kind(waveforms: Waveforms) -> str:
+    """The voltages without the inverter's current, where the record has them."""
+    return "u0" if "u0_a_v" in waveforms.names else "u"
+
+
+def _departures(waveforms: Waveforms, nominal: Nominal) -> Callable[[float], float]:
+    cycle_s, peak_v = 1 / nominal.frequency_hz, nominal.phase_voltage_peak_v
+    return lambda seen_s: departure_s(waveforms, _kind(waveforms), seen_s, cycle_s, peak_v)
 
 
 def _events(seen: _Seen, thresholds: Thresholds) -> tuple[VoltageEvent, ...]:
@@ -169,7 +183,7 @@ def _events(seen: _Seen, thresholds: Thresholds) -> tuple[VoltageEvent, ...]:
 
 
 def _steps(
-    seen: _Seen, events: tuple[VoltageEvent, ...], thresholds: Thresholds
+    seen: _Seen, events: tuple[VoltageEvent, ...], thresholds: Thresholds, departed_s: Callable[[float], float]
 ) -> tuple[tuple[Step, ...], tuple[Jump, ...]]:
     """What moved when, and the jumps of the angle among it."""
     candidates = _apart(_moves_s(seen, thresholds), 2 * thresholds.settled_cycles * seen.cycle_s)
@@ -178,7 +192,7 @@ def _steps(
             near = at_s is None or any(abs(at_s - t) < thresholds.settled_cycles * seen.cycle_s for t in candidates)
             if at_s is not None and not near:
                 candidates.append(at_s)
-    candidates.sort()
+    candidates = sorted({departed_s(at_s) for at_s in candidates})
     steps, jumps = [], []
     for before_s, at_s, after_s in zip(
         [seen.t_s[0], *candidates], candidates, [*candidates[1:], seen.t_s[-1]], strict=False

@@ -1,9 +1,13 @@
 """What the grid did in a record, as plain data: all that judges, draws or tells takes it from here and nowhere else."""
 
+from bisect import bisect_right
+from functools import cached_property
 from itertools import pairwise
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+
+from pvlvrt_compliance.texts import Name, Text
 
 Moved = Literal["voltage", "angle", "frequency", "strength", "irradiance", "harmonics", "recording"]
 """What can move at a step."""
@@ -77,7 +81,7 @@ class Stretch(_Frozen):
     rocof_hz_s: FiniteFloat = 0.0
     irradiance_w_m2: FiniteFloat | None = Field(default=None, description="at the beginning; none: not known")
     ramps: tuple[Moved, ...] = Field(default=(), description="what moves all along it: means are of no one level")
-    in_words: str = ""
+    in_words: Text = ""
 
     def voltage_at(self, t_s: float) -> Voltage:
         """Voltage at an instant of the stretch (s, from the start of the record)."""
@@ -102,8 +106,8 @@ class Stretch(_Frozen):
 class Fact(_Frozen):
     """One thing that is known of a test, for people."""
 
-    name: str
-    text: str
+    name: Name
+    text: Text
 
 
 class Disturbance(_Frozen):
@@ -124,7 +128,7 @@ class Disturbance(_Frozen):
     stretches: tuple[Stretch, ...] = Field(min_length=1)
     frequency_moves: bool = Field(default=False, description="steps, ramps, or what a recording holds")
     irradiance_w_m2: tuple[FiniteFloat, FiniteFloat] | None = Field(default=None, description="first and last")
-    in_words: str = ""
+    in_words: Text = ""
     facts: tuple[Fact, ...] = ()
 
     @property
@@ -136,7 +140,7 @@ class Disturbance(_Frozen):
         """Instants at which any of these moves (s), in order of time."""
         return tuple(step.at_s for step in self.steps if not set(moved).isdisjoint(step.moved))
 
-    @property
+    @cached_property
     def voltage_steps_s(self) -> tuple[float, ...]:
         """Instants at which the voltage jumps, or begins or ends to move (s)."""
         return self.steps_of("voltage")
@@ -148,7 +152,12 @@ class Disturbance(_Frozen):
 
     def stretch_at(self, t_s: float) -> Stretch:
         """The stretch that an instant lies in, its beginning included; before the first, the first."""
-        return next((part for part in reversed(self.stretches) if part.begin_s <= t_s), self.stretches[0])
+        return self.stretches[max(bisect_right(self._begins_s, t_s) - 1, 0)]
+
+    @cached_property
+    def _begins_s(self) -> list[float]:
+        """When each stretch begins (s)."""
+        return [part.begin_s for part in self.stretches]
 
     def no_load(self, t_s: float) -> Voltage:
         """Voltage without the inverter's current at an instant."""
@@ -160,9 +169,9 @@ class Disturbance(_Frozen):
 
     def voltage_stretch(self, at_s: float) -> tuple[float | None, float | None]:
         """Steps of the voltage next to an instant (s), none where the record has no more."""
-        before = [t for t in self.voltage_steps_s if t <= at_s]
-        after = [t for t in self.voltage_steps_s if t > at_s]
-        return before[-1] if before else None, after[0] if after else None
+        steps_s = self.voltage_steps_s
+        k = bisect_right(steps_s, at_s)
+        return steps_s[k - 1] if k else None, steps_s[k] if k < len(steps_s) else None
 
     def voltage_stretches(self, end_s: float) -> tuple[Stretch, ...]:
         """What follows each step of the voltage up to the next, the last to the end of the record (s)."""

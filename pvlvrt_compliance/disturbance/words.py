@@ -1,5 +1,6 @@
 """What the grid did, in words: what a scenario asked of grid and weather, and the state that a stretch is in."""
 
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -18,8 +19,12 @@ from pvlvrt_compliance.scenario.events import (
 )
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.scenario.spans import last_begun
+from pvlvrt_compliance.scenario.timeline import sag_spans
 
 NO_DISTURBANCE = "no disturbance"
+
+_AN_INSTANT_S = 1e-9  # what lies nearer is at the same time
 
 
 def state_in_words(kind: Kind, first: Voltage, last: Voltage | None = None, other_hz: float | None = None) -> str:
@@ -72,28 +77,23 @@ def describe_sag(sag: Sag) -> str:
     return f"{lost} in {where}, {left}{turned}"
 
 
-def stretch_in_words(scenario: Scenario, t_s: float) -> str:
-    """Sag that holds from an instant of the record on (s), and events that begin there; empty without either."""
-    since_start_s = t_s - scenario.start_s
-    sags = [(0.0, scenario.duration_s, scenario.sag)]
-    sags += [(e.t_s, e.t_s + e.duration_s, e.sag) for e in scenario.events if isinstance(e, FurtherSag)]
-    # As the timeline adds up, to the last bit: a sag that begins here holds, one that ends here does not.
-    holding = [
-        (begin_s, sag)
-        for begin_s, end_s, sag in sags
-        if scenario.start_s + begin_s <= t_s < scenario.start_s + end_s and _is_something(sag)
-    ]
-    words = [describe_sag(max(reversed(holding), key=lambda item: item[0])[1])] if holding else []
-    words += [f"{fact.name} {fact.text}" for fact in map(_event, _begun(scenario, since_start_s))]
-    return "; ".join(words)
+def stretches_in_words(scenario: Scenario, begins_s: Sequence[float]) -> Iterator[str]:
+    """Sag that holds from each instant of the record on (s, in order), and events that begin there; empty without."""
+    sags = last_begun([span for span in sag_spans(scenario) if _is_something(span.item)], begins_s)
+    others = [event for event in scenario.events if not isinstance(event, FurtherSag)]
+    begun = sorted((t, k) for k, event in enumerate(others) if (t := _begins_s(event)) is not None)
+    for t_s, sag in zip(begins_s, sags, strict=True):
+        at_s = t_s - scenario.start_s
+        here = begun[bisect_left(begun, (at_s - _AN_INSTANT_S,)) : bisect_left(begun, (at_s + _AN_INSTANT_S,))]
+        facts = [_event(others[k]) for k in sorted(k for _, k in here)]
+        yield "; ".join(
+            [*([] if sag is None else [describe_sag(sag)]), *(f"{fact.name} {fact.text}" for fact in facts)]
+        )
 
 
-def _begun(scenario: Scenario, since_start_s: float) -> Iterator[Event]:
-    """Events other than sags that begin at an instant (s, from the start of the test)."""
-    for event in scenario.events:
-        begins_s = event.points[0][0] if isinstance(event, VoltageProfile) else event.t_s
-        if not isinstance(event, FurtherSag) and begins_s is not None and abs(begins_s - since_start_s) < 1e-9:
-            yield event
+def _begins_s(event: Event) -> float | None:
+    """When an event begins (s, from the start of the test), None of one that is there from the beginning."""
+    return event.points[0][0] if isinstance(event, VoltageProfile) else event.t_s
 
 
 def _is_something(sag: Sag) -> bool:

@@ -34,7 +34,13 @@ def collect(
         disturbance=disturbance,
         available_power_w=available_power_w,
         measurements=measure(
-            waveforms, nominal, disturbance.start_s, disturbance.clear_s, rules, floors_of(profile.thresholds)
+            waveforms,
+            nominal,
+            disturbance.start_s,
+            disturbance.clear_s,
+            rules,
+            floors_of(profile.thresholds),
+            instruments.windows,
         ),
         rules=rules,
         cell_temperature_c=test.scenario.cell_temperature_c,

@@ -11,6 +11,7 @@ from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.evidence.frequency import frequency_hz
 from pvlvrt_compliance.evidence.stretches import settling_s, surely_over_s
+from pvlvrt_compliance.measure.durations import mean_over_time
 from pvlvrt_compliance.measure.extremes import ROUNDING
 from pvlvrt_compliance.measure.quantities import Cursor, CursorStretch
 from pvlvrt_compliance.measure.response import Tolerance, step_response
@@ -145,13 +146,10 @@ def _extremes(evidence: Evidence, quantities: list[_Quantity], span: Span) -> di
 def _means(evidence: Evidence, quantities: list[_Quantity], span: Span) -> list[float]:
     """Means over time, not finite where a quantity is not everywhere, or the span holds no sample."""
     inside = _inside(evidence, span)
-    step_s = evidence.step_s[inside]
-    if not len(step_s):
+    if inside.start == inside.stop:
         return [math.nan] * len(quantities)
     with np.errstate(invalid="ignore"):
-        sums = [float((of.series[inside] * step_s).sum()) for of in quantities]
-    whole_s = float(step_s.sum())
-    return [of / whole_s for of in sums]
+        return [mean_over_time(of.series[inside], evidence.step_s[inside]) for of in quantities]
 
 
 def _timed(evidence: Evidence, quantity: _Quantity, span: Span, levels: tuple[float, float]) -> dict[str, float | None]:
@@ -163,9 +161,12 @@ def _timed(evidence: Evidence, quantity: _Quantity, span: Span, levels: tuple[fl
     inside = _inside(evidence, span)
     x = quantity.series[inside]
     # A change of just the least is timed, whichever way its means are rounded.
-    if abs(final - initial) >= quantity.least * (1 - ROUNDING) and np.isfinite(x).all():
+    if abs(final - initial) >= quantity.least * (1 - ROUNDING):
         band = evidence.thresholds.response_band.value
-        response = step_response(evidence.t_s[inside], x, span.start_s, initial, final, Tolerance(band, band))
+        try:
+            response = step_response(evidence.t_s[inside], x, span.start_s, initial, final, Tolerance(band, band))
+        except MeasurementError:  # it is not finite
+            return found
         found |= {
             "reaction_s": response.reaction_s,
             "rise_s": response.rise_s,

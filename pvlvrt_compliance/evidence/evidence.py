@@ -10,10 +10,10 @@ import numpy as np
 
 from pvlvrt_compliance.disturbance.model import Moved, Stretch
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.evidence.record import NotApplicable, Record, floors_of, require_finite, required
+from pvlvrt_compliance.evidence.record import Record
+from pvlvrt_compliance.evidence.required import NotApplicable, floors_of, require_finite, required
 from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.measure.quantities import WindowMeasurements
-from pvlvrt_compliance.measure.summary import measure_span
 from pvlvrt_compliance.measure.windows import Span, settled_window
 from pvlvrt_compliance.profile.procedure import Detection, Expect, RowDemand
 from pvlvrt_compliance.profile.requirements import Requirements
@@ -165,9 +165,7 @@ class Evidence(Record):
         if span not in self._windows:
             found = self.measurements.during if span == self.during_span else None
             inside = Span(stretch.begin_s, stretch.end_s)
-            self._windows[span] = found or measure_span(
-                self.waveforms, self.nominal, self.frequency_hz, span, inside, floors_of(self.thresholds)
-            )
+            self._windows[span] = found or self.measured_in(span, inside)
         if (window := self._windows[span]) is None:
             window_on_one_grid(self.waveforms, *span)  # raises with the reason where there is one
             raise MeasurementError(f"the window from {span.start_s:.3f} s to {span.end_s:.3f} s cannot be measured")

@@ -80,10 +80,11 @@ def largest_deviation(evidence: Evidence) -> tuple[float, float]:
     first = int(np.isfinite(frequency).argmax())  # what is not known after that is held
     if not np.isfinite(frequency[first]):
         raise NotApplicable("the record has no frequency")
-    deviation = np.abs(frequency[first:] - evidence.nominal.frequency_hz)
-    furthest_hz, since = largest(deviation, _LOOSER * evidence.nominal.frequency_hz)
-    if furthest_hz <= (near_hz := evidence.thresholds.frequency_deviation_hz.value):
+    known, nominal_hz = frequency[first:], evidence.nominal.frequency_hz
+    near_hz = evidence.thresholds.frequency_deviation_hz.value
+    if max(abs(float(known.max()) - nominal_hz), abs(float(known.min()) - nominal_hz)) <= near_hz:
         raise NotApplicable(f"the frequency stays within {near_hz:g} Hz of nominal")
+    _, since = largest(np.abs(known - nominal_hz), _LOOSER * nominal_hz)
     return float(frequency[first + since]), float(evidence.t_s[first + since])
 
 

@@ -10,23 +10,21 @@ import numpy as np
 
 from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.evidence.series import Made, Series
+from pvlvrt_compliance.evidence.cycles import Made
+from pvlvrt_compliance.evidence.required import NotApplicable, floors_of, require_finite, required
+from pvlvrt_compliance.evidence.series import Series
 from pvlvrt_compliance.measure.durations import mean_over_time
 from pvlvrt_compliance.measure.quantities import MeasuredStretch, MeasuredWindows, WindowMeasurements
 from pvlvrt_compliance.measure.response import settled_from
-from pvlvrt_compliance.measure.summary import Floors, measure_span
+from pvlvrt_compliance.measure.summary import measure_span
 from pvlvrt_compliance.measure.windows import Span, WindowRules, standard_windows, stretch_window
-from pvlvrt_compliance.profile.thresholds import Thresholds
 from pvlvrt_compliance.waveforms.breaker import opened_at_s
 from pvlvrt_compliance.waveforms.container import Samples, Segment
 from pvlvrt_compliance.waveforms.joining import window_on_one_grid
 from pvlvrt_compliance.waveforms.trip_causes import in_words
 
 _SAME_INSTANT_S = 1e-9
-
-
-class NotApplicable(Exception):  # noqa: N818 - it is a verdict, not an error
-    """Raised by a check that the code lets off in this test; the text is the reason."""
+_AT_A_TIME = 4096  # samples: what is made of so many on the way stays in the processor's own memory
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -58,8 +56,8 @@ class Record(Series):
     def _slice(self, start_s: float, end_s: float, side: Literal["left", "right"]) -> slice:
         key = (start_s, end_s, side)  # the checks and the figures ask for the same spans again and again
         if key not in self._slices:
-            first = int(np.searchsorted(self.t_s, start_s - _SAME_INSTANT_S))
-            self._slices[key] = slice(first, max(int(np.searchsorted(self.t_s, end_s, side)), first))
+            first = int(self.t_s.searchsorted(start_s - _SAME_INSTANT_S))
+            self._slices[key] = slice(first, max(int(self.t_s.searchsorted(end_s, side)), first))
         return self._slices[key]
 
     @cached_property
@@ -73,7 +71,9 @@ class Record(Series):
     @cached_property
     def largest_current_pu(self) -> Samples:
         """One-cycle fundamental amplitude of the phase current that is the largest, shape (n,)."""
-        largest: Samples = np.maximum.reduce(self.current_phase_pu)
+        a, b, c = self.current_phase_pu
+        largest: Samples = np.maximum(a, b)
+        np.maximum(largest, c, out=largest)
         return largest
 
     @cached_property
@@ -81,11 +81,17 @@ class Record(Series):
         """The largest magnitude of the instantaneous phase currents, shape (n,)."""
 
         def largest(segment: Segment) -> Samples:
-            a, b, c = segment.three_phase("i")
-            found: Samples = np.maximum(np.maximum(np.abs(a), np.abs(b)), np.abs(c))
+            found, part = np.empty(len(segment)), np.empty(_AT_A_TIME)
+            for begin in range(0, len(segment), _AT_A_TIME):
+                here = found[begin : begin + _AT_A_TIME]
+                a, b, c = (x[begin : begin + _AT_A_TIME] for x in segment.three_phase("i"))
+                np.abs(a, out=here)
+                for x in (b, c):
+                    np.maximum(here, np.abs(x, out=part[: len(x)]), out=here)
+                here /= self.nominal.phase_current_peak_a
             return found
 
-        return self.joined(largest) / self.nominal.phase_current_peak_a
+        return self.joined(largest)
 
     @cached_property
     def disconnected_at_s(self) -> float | None:
@@ -191,10 +197,13 @@ class Record(Series):
         settled = self.thresholds.settled_cycles.value
         span = stretch_window(part.begin_s, part.end_s, self.frequency_hz, settled, self.rules)
         inside = Span(part.begin_s, part.end_s)
-        window = span and measure_span(
-            self.waveforms, self.nominal, self.frequency_hz, span, inside, floors_of(self.thresholds)
-        )
+        window = span and self.measured_in(span, inside)
         return MeasuredStretch(begin_s=part.begin_s, end_s=part.end_s, in_words=part.in_words, window=window)
+
+    def measured_in(self, span: Span, inside: Span) -> WindowMeasurements | None:
+        """What is measured in a window, its largest current looked for in another span; None where it cannot be."""
+        floors, by = floors_of(self.thresholds), self.instruments.windows
+        return measure_span(self.waveforms, self.nominal, self.frequency_hz, span, inside, floors, by)
 
     @property
     def record_end_s(self) -> float:
@@ -267,40 +276,3 @@ class Record(Series):
             raise NotApplicable(f"the sag of {self.disturbance.duration_s:.3f} s leaves no whole cycle to measure")
         window_on_one_grid(self.waveforms, *self.during_span)  # raises with the reason where there is one
         raise MeasurementError("the window during the sag cannot be measured")
-
-
-def floors_of(thresholds: Thresholds) -> Floors:
-    """From where on the quantities of a window are stated."""
-    return Floors(
-        voltage_pu=thresholds.window_voltage_floor_pu.value,
-        fundamental_pu=thresholds.least_fundamental_fraction.value,
-        other_frequency_hz=thresholds.other_frequency_hz.value,
-    )
-
-
-def require_finite(values: Samples, what: str, t_s: Samples) -> Samples:
-    """Return the values, shape (..., n), when all are finite.
-
-    Raises
-    ------
-    MeasurementError
-        Naming the first instant at which one is not.
-    """
-    finite = np.isfinite(values)
-    if not finite.all():
-        bad = np.atleast_2d(~finite).any(axis=0)
-        raise MeasurementError(f"{what} has no finite value at {t_s[bad.argmax()]:.3f} s")
-    return values
-
-
-def required(value: float | None, what: str) -> float:
-    """Return a measured value that a verdict needs.
-
-    Raises
-    ------
-    MeasurementError
-        When it could not be measured.
-    """
-    if value is None:
-        raise MeasurementError(f"{what} could not be measured")
-    return value

@@ -40,8 +40,10 @@ def voltage_quantity_pu(evidence: Evidence, quantity: VoltageQuantity, place: Pl
 def _made(evidence: Evidence, quantity: VoltageQuantity, place: Place) -> Samples:
     if quantity == "positive_sequence":
         return evidence.voltage_positive_pu if place == "terminals" else evidence.sequence_pu("u0", 0)
-    phasors = evidence.no_load_phasors_pu if place == "no_load" else None
-    phasors = evidence.voltage_phasors_pu if phasors is None else phasors
-    line_to_line = quantity.endswith("line_to_line")
-    amplitudes = evidence.once(("amplitudes", place, line_to_line), lambda: amplitudes_for(phasors, quantity))
+    kind = "u0" if place == "no_load" else "u"
+    if quantity.endswith("line_to_line"):
+        phasors = evidence.voltage_phasors_of_pu(kind)
+        amplitudes = evidence.once(("line_to_line", kind), lambda: amplitudes_for(phasors, quantity))
+    else:
+        amplitudes = evidence.phase_amplitudes_pu(kind)
     return of_amplitudes(amplitudes, quantity)

@@ -88,8 +88,10 @@ def _event(t_s: Samples, first: int, end: int, kind: Kind) -> VoltageEvent:
 
 def _stretches(enter: NDArray[np.bool_], leave: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """Indices from where one mask holds to where the other first does: pairs of first and end."""
-    n = len(enter)
-    marked = np.maximum.accumulate(np.where(enter | leave, np.arange(n), -1))
-    inside = (marked >= 0) & enter[marked]
-    edges = np.diff(inside.astype(np.int8), prepend=0, append=0)
-    return list(zip(np.flatnonzero(edges > 0).tolist(), np.flatnonzero(edges < 0).tolist(), strict=True))
+    if not enter.any():
+        return []
+    marked = np.flatnonzero(enter | leave)  # what neither enters nor leaves changes nothing
+    inside = enter[marked]
+    changes = marked[1:][inside[1:] != inside[:-1]].tolist()
+    edges = [*([int(marked[0])] if inside[0] else []), *changes, *([len(enter)] if inside[-1] else [])]
+    return list(zip(edges[::2], edges[1::2], strict=True))

@@ -1,6 +1,7 @@
 """Fundamental frequency from the turning of the positive-sequence phasor."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -15,9 +16,16 @@ _ITERATIONS = 20
 _ANGLES_A_CYCLE = 16
 _LONGEST_S = 0.5
 
+Found = Callable[[Segment, float, str, float], float | None]
+"""Segment, nominal frequency (Hz), kind and floor: the frequency (Hz), None where there is none."""
+
 
 def fundamental_frequency(
-    segment: Segment, nominal_hz: float, kind: str = "u", floor: float = AMPLITUDE_FLOOR
+    segment: Segment,
+    nominal_hz: float,
+    kind: str = "u",
+    floor: float = AMPLITUDE_FLOOR,
+    by: Found | None = None,
 ) -> float:
     """Frequency (Hz) of the positive sequence, mean over a segment.
 
@@ -34,12 +42,16 @@ def fundamental_frequency(
         ``u``, ``u0`` or ``i``.
     floor : float
         Least amplitude of the positive sequence (V or A, peak).
+    by : function, optional
+        Does the same in place of numpy, and gives None where it finds none.
 
     Raises
     ------
     MeasurementError
         When there is no voltage (or current), too short a segment, a missing channel or no frequency to settle on.
     """
+    if by is not None and (found := by(segment, nominal_hz, kind, floor)) is not None:
+        return found
     vector = clarke(*segment.three_phase(kind))
     frequency_hz = nominal_hz
     for _ in range(_ITERATIONS):
@@ -67,10 +79,17 @@ def _turning_hz(vector: ComplexSamples, dt_s: float, frequency_hz: float, floor:
     return float((angle @ k) / (k @ k) / (2 * np.pi * stride * dt_s))
 
 
-def frequency_before(waveforms: Waveforms, start_s: float, nominal_hz: float, floor: float = AMPLITUDE_FLOOR) -> float:
+def frequency_before(
+    waveforms: Waveforms,
+    start_s: float,
+    nominal_hz: float,
+    floor: float = AMPLITUDE_FLOOR,
+    by: Found | None = None,
+) -> float:
     """Frequency (Hz) of the voltages just before an instant: what windows and Fourier components of a record go by.
 
-    From the last half second, or what the record has of it at one sampling step.
+    From the last half second, or what the record has of it at one sampling step; ``by`` as in
+    `fundamental_frequency`.
 
     Raises
     ------
@@ -80,7 +99,7 @@ def frequency_before(waveforms: Waveforms, start_s: float, nominal_hz: float, fl
     for segment in reversed(waveforms.segments):
         piece = segment.slice(start_s - _LONGEST_S, start_s)
         if len(piece) * piece.dt_s * nominal_hz >= 2:
-            return fundamental_frequency(piece, nominal_hz, floor=floor)
+            return fundamental_frequency(piece, nominal_hz, "u", floor, by)
     raise MeasurementError(f"the record before {start_s:.3f} s is too short to measure its frequency")
 
 

@@ -1,6 +1,7 @@
 """Harmonics and total harmonic distortion over whole cycles."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -15,7 +16,13 @@ _TINY = 1e-300
 _ONE_THREAD = 1 << 18  # products up to which the matrix library wakes no threads, which cost more than they give
 
 
-def harmonic_amplitudes(x: Samples, dt_s: float, frequency_hz: float, highest: int = 40) -> Samples:
+def harmonic_amplitudes(
+    x: Samples,
+    dt_s: float,
+    frequency_hz: float,
+    highest: int = 40,
+    by: Callable[[Samples, float, int], Samples] | None = None,
+) -> Samples:
     """Amplitudes of the mean and the harmonics over the whole cycles at the beginning of a window.
 
     Least squares on all orders up to ``highest`` at once, hence exact for a periodic signal although its cycle is no
@@ -29,6 +36,8 @@ def harmonic_amplitudes(x: Samples, dt_s: float, frequency_hz: float, highest: i
         Sampling step (s); frequency of the fundamental (Hz).
     highest : int
         Highest order.
+    by : function, optional
+        Does so in place of numpy: samples of whole cycles, angle of the fundamental from one to the next, last order.
 
     Returns
     -------
@@ -42,12 +51,18 @@ def harmonic_amplitudes(x: Samples, dt_s: float, frequency_hz: float, highest: i
     """
     n = whole_cycles(x.shape[-1], dt_s, frequency_hz).samples
     carried = min(highest, (n - 1) // 2, math.ceil(0.5 / (frequency_hz * dt_s)) - 1)
-    projections = _projections(x[..., :n], 2 * np.pi * frequency_hz * dt_s, carried)
-    both_signs = np.concatenate([projections[:0:-1].conj(), projections])
-    products = _inner_products(n, 2 * np.pi * frequency_hz * dt_s, carried)
-    found = _least_squares(products, np.moveaxis(both_signs, 0, -1))
     amplitudes = np.zeros((*x.shape[:-1], highest + 1))
-    amplitudes[..., : carried + 1] = 2 * np.abs(found[..., carried:])
+    amplitudes[..., : carried + 1] = (by or _amplitudes)(x[..., :n], 2 * np.pi * frequency_hz * dt_s, carried)
+    return amplitudes
+
+
+def _amplitudes(x: Samples, theta: float, carried: int) -> Samples:
+    """Amplitudes of all orders up to the last that is carried, shape (..., carried + 1)."""
+    projections = _projections(x, theta, carried)
+    both_signs = np.concatenate([projections[:0:-1].conj(), projections])
+    products = _inner_products(x.shape[-1], theta, carried)
+    found = _least_squares(products, np.moveaxis(both_signs, 0, -1))
+    amplitudes: Samples = 2 * np.abs(found[..., carried:])
     amplitudes[..., 0] /= 2
     return amplitudes
 

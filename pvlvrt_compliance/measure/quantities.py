@@ -4,6 +4,8 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, SerializerFunctionWrapHandler, model_serializer
 
+from pvlvrt_compliance.texts import Name, Text
+
 
 class _Frozen(BaseModel):
     model_config = ConfigDict(frozen=True, extra="ignore")
@@ -40,7 +42,7 @@ class MeasuredStretch(_Frozen):
 
     begin_s: FiniteFloat
     end_s: FiniteFloat
-    in_words: str = ""
+    in_words: Text = ""
     window: WindowMeasurements | None = Field(default=None, description="none: too short for a settled cycle")
 
 
@@ -51,7 +53,7 @@ class Cursor(_Frozen):
     change from ``initial`` to ``final``.
     """
 
-    quantity: str = Field(description="voltage_positive_pu and its like, as limits of figures name them")
+    quantity: Name = Field(description="voltage_positive_pu and its like, as limits of figures name them")
     minimum: FiniteFloat
     maximum: FiniteFloat
     mean: FiniteFloat
@@ -74,7 +76,7 @@ class CursorStretch(_Frozen):
     begin_s: FiniteFloat
     end_s: FiniteFloat
     is_before: bool = Field(default=False, description="the window before the disturbance, in which nothing is timed")
-    in_words: str = ""
+    in_words: Text = ""
     band_percent: FiniteFloat | None = Field(
         default=None, description="of the change, on both sides of the final value: what the settling time is of"
     )

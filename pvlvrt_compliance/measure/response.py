@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.waveforms.container import Samples
 
+_AT_A_TIME = 4096  # samples
+
 
 class Tolerance(NamedTuple):
     """Tolerance around the final value, as fractions of the change, seen in the direction of the change."""
@@ -86,9 +88,12 @@ def _since(event_s: float, t_s: float | None) -> float | None:
 
 def first_reached(t: Samples, y: Samples, level: float) -> float | None:
     """First instant (s) at which a series is at or above a level, None when it never is; shapes (n,)."""
-    reached = y >= level
-    first = int(reached.argmax()) if len(reached) else 0
-    return _crossing(t, y, first, level) if len(reached) and reached[first] else None
+    for begin in range(0, len(y), _AT_A_TIME):  # as a rule that is soon
+        reached = y[begin : begin + _AT_A_TIME] >= level
+        first = int(reached.argmax())
+        if reached[first]:
+            return _crossing(t, y, begin + first, level)
+    return None
 
 
 def last_entry(t: Samples, y: Samples, low: float, high: float) -> float | None:

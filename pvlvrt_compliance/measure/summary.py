@@ -9,9 +9,14 @@ from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.measure.fourier import components, mean
 from pvlvrt_compliance.measure.frequency import frequency_before, fundamental_frequency
 from pvlvrt_compliance.measure.harmonics import distortion_percent, harmonic_amplitudes
-from pvlvrt_compliance.measure.power import instantaneous_power
 from pvlvrt_compliance.measure.quantities import ControllerBeliefs, MeasuredWindows, WindowMeasurements
-from pvlvrt_compliance.measure.ripple import ripple_amplitude, ripple_percent
+from pvlvrt_compliance.measure.window_sums import (
+    WINDOWS_BY_DEFINITION,
+    WindowInstruments,
+    WindowSums,
+    has_phases,
+    window_sums,
+)
 from pvlvrt_compliance.measure.windows import STANDARD_RULES, Span, WindowRules, standard_windows
 from pvlvrt_compliance.space_vectors import fortescue
 from pvlvrt_compliance.units import Nominal
@@ -45,6 +50,7 @@ def measure(
     clear_s: float,
     rules: WindowRules = STANDARD_RULES,
     floors: Floors = STANDARD_FLOORS,
+    by: WindowInstruments = WINDOWS_BY_DEFINITION,
 ) -> MeasuredWindows:
     """Measure a record in the windows before, during and after its sag.
 
@@ -67,15 +73,17 @@ def measure(
         Where the windows lie.
     floors : Floors
         From where on quantities are stated.
+    by : WindowInstruments
+        What windows are measured with.
     """
-    frequency_hz = _record_frequency(waveforms, nominal, start_s, floors)
+    frequency_hz = _record_frequency(waveforms, nominal, start_s, floors, by)
     # The last sample stands for the step that follows it.
     end_s = waveforms.end_s + waveforms.segments[-1].dt_s
     windows = standard_windows(start_s, clear_s, end_s, frequency_hz, rules, record_start_s=waveforms.t0_s)
     peak_spans = (windows.before, Span(start_s, clear_s), Span(clear_s, end_s))
     held = {name: _held(waveforms, span) for name, span in windows._asdict().items()}
     measured = {
-        name: _measure_window(waveforms, nominal, frequency_hz, held[name], span, peak_span, floors)
+        name: _measure_window(waveforms, nominal, frequency_hz, held[name], span, peak_span, floors, by)
         for name, span, peak_span in zip(windows._fields, windows, peak_spans, strict=True)
         if span is not None and peak_span is not None
     }
@@ -89,6 +97,7 @@ def measure_span(
     span: Span,
     peak_span: Span,
     floors: Floors = STANDARD_FLOORS,
+    by: WindowInstruments = WINDOWS_BY_DEFINITION,
 ) -> WindowMeasurements | None:
     """Measure a record in one window as `measure` does; None where the record does not hold it.
 
@@ -100,8 +109,10 @@ def measure_span(
         The window, and where the largest instantaneous current is looked for.
     floors : Floors
         From where on quantities are stated.
+    by : WindowInstruments
+        What windows are measured with.
     """
-    return _measure_window(waveforms, nominal, frequency_hz, _held(waveforms, span), span, peak_span, floors)
+    return _measure_window(waveforms, nominal, frequency_hz, _held(waveforms, span), span, peak_span, floors, by)
 
 
 def _held(waveforms: Waveforms, span: Span | None) -> Segment | None:
@@ -112,10 +123,12 @@ def _held(waveforms: Waveforms, span: Span | None) -> Segment | None:
         return None
 
 
-def _record_frequency(waveforms: Waveforms, nominal: Nominal, start_s: float, floors: Floors) -> float:
+def _record_frequency(
+    waveforms: Waveforms, nominal: Nominal, start_s: float, floors: Floors, by: WindowInstruments
+) -> float:
     floor = floors.voltage_pu * nominal.phase_voltage_peak_v
     try:
-        return frequency_before(waveforms, start_s, nominal.frequency_hz, floor)
+        return frequency_before(waveforms, start_s, nominal.frequency_hz, floor, by.frequency)
     except MeasurementError:
         return nominal.frequency_hz
 
@@ -128,19 +141,21 @@ def _measure_window(
     span: Span,
     peak_span: Span,
     floors: Floors,
+    by: WindowInstruments,
 ) -> WindowMeasurements | None:
     if segment is None:
         return None
     try:
         last = _last_part(waveforms, segment, span, frequency_hz)
-        own_hz = _window_frequency(last, nominal, frequency_hz, floors)
+        own_hz = _window_frequency(last, nominal, frequency_hz, floors, by)
         if own_hz is not None and abs(own_hz - frequency_hz) > floors.other_frequency_hz:
             # Over many cycles a component at another frequency than the assumed one averages out.
             frequency_hz = own_hz
-            own_hz = _window_frequency(last, nominal, frequency_hz, floors)
-        quantities = _voltages(segment, nominal, frequency_hz) | {"frequency_hz": own_hz}
-        quantities |= _currents(segment, last, nominal, frequency_hz, floors)
-        quantities |= _powers(segment, frequency_hz) | _dc_voltage(segment, frequency_hz)
+            own_hz = _window_frequency(last, nominal, frequency_hz, floors, by)
+        sums = window_sums(segment, frequency_hz, by)
+        quantities = _voltages(sums, nominal) | _powers(sums) | _dc_voltage(sums) | {"frequency_hz": own_hz}
+        if has_phases(segment, "i"):
+            quantities |= _currents(segment, last, nominal, frequency_hz, floors, by)
     except MeasurementError:
         return None
     quantities["current_peak_pu"] = _current_peak(waveforms, nominal, peak_span)
@@ -159,36 +174,32 @@ def _is_finite(value: float | tuple[float, ...] | None) -> bool:
     return value is not None and all(math.isfinite(v) for v in (value if isinstance(value, tuple) else (value,)))
 
 
-def _has(segment: Segment, *kinds: str) -> bool:
-    """Whether a record has the three phases of each kind (a recording may lack some)."""
-    names = [f"{kind}_{phase}_{'a' if kind == 'i' else 'v'}" for kind in kinds for phase in "abc"]
-    return all(name in segment.channels for name in names)
-
-
-def _voltages(segment: Segment, nominal: Nominal, frequency_hz: float) -> Quantities:
-    if not _has(segment, "u"):
+def _voltages(sums: WindowSums, nominal: Nominal) -> Quantities:
+    if sums.voltages is None:
         return {}
-    phasors = components(np.stack(segment.three_phase("u")), segment.dt_s, frequency_hz)
-    positive, negative, _ = fortescue(*phasors)
+    positive, negative, _ = fortescue(*sums.voltages)
     return {
         "voltage_positive_pu": abs(positive) / nominal.phase_voltage_peak_v,
         "voltage_negative_pu": abs(negative) / nominal.phase_voltage_peak_v,
     }
 
 
-def _window_frequency(segment: Segment, nominal: Nominal, frequency_hz: float, floors: Floors) -> float | None:
-    if not _has(segment, "u"):
+def _window_frequency(
+    segment: Segment, nominal: Nominal, frequency_hz: float, floors: Floors, by: WindowInstruments
+) -> float | None:
+    if not has_phases(segment, "u"):
         return None
     try:
-        return fundamental_frequency(segment, frequency_hz, floor=floors.voltage_pu * nominal.phase_voltage_peak_v)
+        floor = floors.voltage_pu * nominal.phase_voltage_peak_v
+        return fundamental_frequency(segment, frequency_hz, "u", floor, by.frequency)
     except MeasurementError:
         return None
 
 
-def _currents(segment: Segment, last: Segment, nominal: Nominal, frequency_hz: float, floors: Floors) -> Quantities:
-    if not _has(segment, "i"):
-        return {}
-    amplitudes = harmonic_amplitudes(np.stack(last.three_phase("i")), last.dt_s, frequency_hz)
+def _currents(
+    segment: Segment, last: Segment, nominal: Nominal, frequency_hz: float, floors: Floors, by: WindowInstruments
+) -> Quantities:
+    amplitudes = harmonic_amplitudes(np.stack(last.three_phase("i")), last.dt_s, frequency_hz, by=by.harmonics)
     fundamentals = amplitudes[:, 1]
     if last.t0_s > segment.t0_s:
         fundamentals = np.abs(components(np.stack(segment.three_phase("i")), segment.dt_s, frequency_hz))
@@ -203,29 +214,26 @@ def _currents(segment: Segment, last: Segment, nominal: Nominal, frequency_hz: f
 
 def _current_peak(waveforms: Waveforms, nominal: Nominal, span: Span) -> float | None:
     pieces = [segment.slice(*span) for segment in waveforms]
-    peaks = [np.abs(x).max() for piece in pieces if len(piece) and _has(piece, "i") for x in piece.three_phase("i")]
+    channels = [x for piece in pieces if len(piece) and has_phases(piece, "i") for x in piece.three_phase("i")]
+    peaks = [peak for x in channels for peak in (x.max(), -x.min())]
     return float(np.max(peaks)) / nominal.phase_current_peak_a if peaks else None
 
 
-def _powers(segment: Segment, frequency_hz: float) -> Quantities:
-    if not _has(segment, "u", "i"):
+def _powers(sums: WindowSums) -> Quantities:
+    if sums.powers is None:
         return {}
-    p, q = instantaneous_power(segment)
     return {
-        "active_power_kw": mean(p, segment.dt_s, frequency_hz) / 1e3,
-        "reactive_power_kvar": mean(q, segment.dt_s, frequency_hz) / 1e3,
-        "active_power_2f_kw": ripple_amplitude(p, segment.dt_s, frequency_hz) / 1e3,
+        "active_power_kw": sums.powers.active / 1e3,
+        "reactive_power_kvar": sums.powers.reactive / 1e3,
+        "active_power_2f_kw": sums.powers.active_2f / 1e3,
     }
 
 
-def _dc_voltage(segment: Segment, frequency_hz: float) -> Quantities:
-    if "v_dc_v" not in segment.channels:
+def _dc_voltage(sums: WindowSums) -> Quantities:
+    if sums.dc is None:
         return {}
-    v_dc = segment["v_dc_v"]
-    return {
-        "dc_voltage_mean_v": mean(v_dc, segment.dt_s, frequency_hz),
-        "dc_voltage_2f_percent": ripple_percent(v_dc, segment.dt_s, frequency_hz),
-    }
+    level, of_2f = sums.dc
+    return {"dc_voltage_mean_v": level, "dc_voltage_2f_percent": 100 * of_2f / level if level > 0 else None}
 
 
 def _controller(segment: Segment | None, frequency_hz: float) -> ControllerBeliefs | None:

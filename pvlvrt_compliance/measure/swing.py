@@ -5,11 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pvlvrt_compliance.measure.durations import mean_over_time
+from pvlvrt_compliance.measure.durations import is_one_step, mean_over_time
 from pvlvrt_compliance.measure.extremes import largest
 from pvlvrt_compliance.waveforms.container import Samples
 
 _STEP_S = 1e-3
+_PIECE = 256  # samples that are looked at by their highest and lowest first ...
+_FEW = 12  # ... and so many pieces that it pays to look into one by one
 """Step of the series that a frequency is looked for in: swings of a control are far below the 500 Hz it carries (s)."""
 
 _PADDING = 8
@@ -43,10 +45,10 @@ def without_line(t_s: Samples, x: Samples, step_s: Samples) -> Samples:
     """A series less its least-squares straight line, shape (n,), each sample counting as long as it lasts."""
     since = t_s - mean_over_time(t_s, step_s)
     rest: Samples = x - mean_over_time(x, step_s)
-    lever = step_s * since
-    spread = (lever * since).sum()
+    lever = since if is_one_step(step_s) else step_s * since
+    spread = np.einsum("n,n->", lever, since)
     if spread > 0:
-        since *= (lever * rest).sum() / spread
+        since *= np.einsum("n,n->", lever, rest) / spread
         rest -= since
     return rest
 
@@ -76,8 +78,23 @@ def swing(t_s: Samples, x: Samples, step_s: Samples, scale: float | None = None)
 def to_and_fro(x: Samples) -> float:
     """The smaller of a series' largest rise and its largest fall, each from any sample to a later one."""
     if x.argmin() < x.argmax():  # then nothing falls further than from the lowest to the highest it rises
+        return _largest_fall(x)
+    return _largest_fall(-x)
+
+
+def _largest_fall(x: Samples) -> float:
+    """The largest fall of a series from a sample to a later one, shape (n,).
+
+    Between pieces by their highest and lowest values; inside of one only where it spans more than is found by then.
+    """
+    pieces = np.concatenate([x, np.full(-len(x) % _PIECE, x[-1])]).reshape(-1, _PIECE)
+    high, low = pieces.max(axis=1), pieces.min(axis=1)
+    fallen = float((np.maximum.accumulate(high)[:-1] - low[1:]).max(initial=0.0))
+    wide = np.flatnonzero(high - low > fallen)
+    if len(wide) > _FEW:
         return float((np.maximum.accumulate(x) - x).max())
-    return float((x - np.minimum.accumulate(x)).max())
+    inside = (float((np.maximum.accumulate(pieces[k]) - pieces[k]).max()) for k in wide)
+    return max(fallen, *inside, 0.0)
 
 
 def tone(t_s: Samples, x: Samples, step_s: Samples) -> Tone | None:

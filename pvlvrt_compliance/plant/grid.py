@@ -182,3 +182,35 @@ def source_voltage(x: Source) -> complex:
 def zero_sequence(x: Source) -> float:
     """Zero-sequence voltage of the source, phase to neutral (V); it drives no current through three wires."""
     return (x.u_zero * x.turn).real
+
+
+@kernel
+def with_harmonics(e: complex, source: Source, t: float, table: HarmonicTable | None) -> complex:
+    """Source voltage (V) with its harmonics, if any."""
+    if table is None:
+        return e
+    return e + harmonic_voltage(source, t, table)
+
+
+@kernel
+def or_playback(e: complex, t: float, table: PlaybackTable | None) -> complex:
+    """Source voltage (V), or the recording's while there is one."""
+    if table is None:
+        return e
+    return playback_voltage(t, table) if is_playing(t, table) else e
+
+
+@kernel
+def zero_with_harmonics(u: float, source: Source, t: float, table: HarmonicTable | None) -> float:
+    """Zero sequence (V) with that of the harmonics, if any."""
+    if table is None:
+        return u
+    return u + harmonic_zero_sequence(source, t, table)
+
+
+@kernel
+def zero_or_playback(u: float, t: float, table: PlaybackTable | None) -> float:
+    """Zero sequence (V), or the recording's while there is one."""
+    if table is None:
+        return u
+    return playback_zero_sequence(t, table) if is_playing(t, table) else u

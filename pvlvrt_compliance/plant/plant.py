@@ -4,23 +4,23 @@ from typing import NamedTuple
 
 from pvlvrt_compliance.kernel import kernel
 from pvlvrt_compliance.plant.carrier import Pulses, pulses_of
+from pvlvrt_compliance.plant.diode_bridge import blocked_dc_current, blocked_flow, blocked_voltage
 from pvlvrt_compliance.plant.grid import (
     GridTable,
     HarmonicTable,
     PlaybackTable,
     Source,
     half_step_later,
-    harmonic_voltage,
-    harmonic_zero_sequence,
-    is_playing,
-    playback_voltage,
-    playback_zero_sequence,
+    or_playback,
     source_at,
     source_voltage,
     step_later,
+    with_harmonics,
+    zero_or_playback,
     zero_sequence,
+    zero_with_harmonics,
 )
-from pvlvrt_compliance.plant.inverter import Bridge, freewheeling, limit_modulation, modulated
+from pvlvrt_compliance.plant.inverter import limit_modulation, modulated
 from pvlvrt_compliance.plant.line import LineParams, LineTable, line_at, line_step, pcc_voltage
 from pvlvrt_compliance.plant.protection import (
     NO_TRIP,
@@ -31,7 +31,7 @@ from pvlvrt_compliance.plant.protection import (
     undervoltage_limit,
 )
 from pvlvrt_compliance.plant.pv_array import PvParams, array_current, diode_voltage
-from pvlvrt_compliance.plant.switched_bridge import DeviceParams, PeriodMean, added_to_mean, switched_flow
+from pvlvrt_compliance.plant.switched_bridge import DeviceParams, PeriodMean, SwitchedFlow, added_to_mean, switched_flow
 from pvlvrt_compliance.plant.weather import IrradianceTable, irradiance_at
 from pvlvrt_compliance.vectors import scaled
 
@@ -72,6 +72,7 @@ class PlantState(NamedTuple):
     trip: int  # code of the trip (-)
     t_trip: float  # time since the trip (s)
     closed: bool  # breaker
+    blocked: bool  # bridge, by its controller
     mean: PeriodMean  # of the switched bridge; the averaged one leaves it alone
 
 
@@ -95,22 +96,29 @@ class Observed(NamedTuple):
 
 
 @kernel
-def bridge(m: complex, i: complex, v_dc: float, blocked: bool) -> Bridge:
-    """Bridge in the state it is in."""
-    return freewheeling(i, v_dc) if blocked else modulated(m, i, v_dc)
+def is_blocked(x: PlantState) -> bool:
+    """Whether no device of the bridge is turned on: by the controller, or since a trip."""
+    return x.blocked or x.trip != NO_TRIP
 
 
 @kernel
-def extinguish(i_next: complex, i: complex, blocked: bool) -> complex:
-    """Current after a step; what diodes carry ends where it would reverse."""
-    reverses = i_next.real * i.real + i_next.imag * i.imag <= 0
-    return 0j if blocked and reverses else i_next
+def dc_current(x: PlantState, m: complex) -> float:
+    """Current that the bridge takes from the DC link (A), averaged over a carrier period, or blocked."""
+    return blocked_dc_current(x.i) if is_blocked(x) else modulated(limit_modulation(m), x.i, x.v_dc).i_dc
+
+
+@kernel
+def drop_of(devices: DeviceParams | None) -> float:
+    """Voltage across a conducting diode (V)."""
+    if devices is None:
+        return 0.0
+    return devices.v_drop
 
 
 @kernel
 def terminal_voltage(x: PlantState, i: complex, u_inv: complex, e: complex, p: PlantParams) -> complex:
     """Voltage at the PCC (V): the source's own once no current can flow."""
-    conducting = x.closed and (x.trip == NO_TRIP or i != 0)
+    conducting = x.closed and (not is_blocked(x) or i != 0)
     return pcc_voltage(i, u_inv, e, p.line) if conducting else e
 
 
@@ -131,44 +139,13 @@ def as_at(t: float, k: int, p: PlantParams, tables: PlantTables) -> PlantParams:
 
 
 @kernel
-def inverter_voltage(x: PlantState, m: complex, devices: DeviceParams | None) -> complex:
+def inverter_voltage(x: PlantState, m: complex, e: complex, devices: DeviceParams | None) -> complex:
     """Inverter voltage (V) that sensors see: of the switched bridge the mean over the period that has ended."""
-    u = bridge(limit_modulation(m), x.i, x.v_dc, x.trip != NO_TRIP).u
+    if is_blocked(x):
+        return blocked_voltage(x.i, e, x.v_dc, drop_of(devices))
     if devices is None:
-        return u
-    return x.mean.u if x.trip == NO_TRIP else u
-
-
-@kernel
-def with_harmonics(e: complex, source: Source, t: float, table: HarmonicTable | None) -> complex:
-    """Source voltage (V) with its harmonics, if any."""
-    if table is None:
-        return e
-    return e + harmonic_voltage(source, t, table)
-
-
-@kernel
-def or_playback(e: complex, t: float, table: PlaybackTable | None) -> complex:
-    """Source voltage (V), or the recording's while there is one."""
-    if table is None:
-        return e
-    return playback_voltage(t, table) if is_playing(t, table) else e
-
-
-@kernel
-def zero_with_harmonics(u: float, source: Source, t: float, table: HarmonicTable | None) -> float:
-    """Zero sequence (V) with that of the harmonics, if any."""
-    if table is None:
-        return u
-    return u + harmonic_zero_sequence(source, t, table)
-
-
-@kernel
-def zero_or_playback(u: float, t: float, table: PlaybackTable | None) -> float:
-    """Zero sequence (V), or the recording's while there is one."""
-    if table is None:
-        return u
-    return playback_zero_sequence(t, table) if is_playing(t, table) else u
+        return modulated(limit_modulation(m), x.i, x.v_dc).u
+    return x.mean.u
 
 
 @kernel
@@ -178,44 +155,54 @@ def observe(x: PlantState, m: complex, source: Source, t: float, p: PlantParams,
     e = or_playback(e, t, tables.playback)
     zero = zero_with_harmonics(zero_sequence(source), source, t, tables.harmonics)
     zero = zero_or_playback(zero, t, tables.playback)
-    u_ab = terminal_voltage(x, x.i, inverter_voltage(x, m, p.devices), e, p)
+    u_ab = terminal_voltage(x, x.i, inverter_voltage(x, m, e, p.devices), e, p)
     return Observed(u_ab=u_ab, u0_ab=e, u_zero=zero)
 
 
 @kernel
 def averaged_flow(x: PlantState, m: complex, e: complex, p: PlantParams) -> Flow:
-    """Advance line, link and array by one plant step under the averaged or the blocked bridge.
+    """Advance line, link and array by one plant step under the averaged bridge.
 
     Second order: DC voltage and source are taken at the middle of the step, the line is solved exactly over it.
     """
     per_farad = p.T_S / p.C
-    blocked = x.trip != NO_TRIP
-    v_mid = max(x.v_dc + 0.5 * per_farad * (x.i_pv - bridge(m, x.i, x.v_dc, blocked).i_dc), 0.0)
-    u_inv = bridge(m, x.i, v_mid, blocked).u
-    i = extinguish(line_step(x.i, u_inv, e, p.line), x.i, blocked) if x.closed else 0j
+    v_mid = max(x.v_dc + 0.5 * per_farad * (x.i_pv - modulated(m, x.i, x.v_dc).i_dc), 0.0)
+    u_inv = modulated(m, x.i, v_mid).u
+    i = line_step(x.i, u_inv, e, p.line) if x.closed else 0j
     i_mid = scaled(0.5, x.i + i)
     x_pv = diode_voltage(v_mid, p.G, x.x_pv, p.pv)
     i_pv = array_current(v_mid, x_pv, p.pv)
-    v_dc = max(x.v_dc + per_farad * (i_pv - bridge(m, i_mid, v_mid, blocked).i_dc), 0.0)
+    v_dc = max(x.v_dc + per_farad * (i_pv - modulated(m, i_mid, v_mid).i_dc), 0.0)
     return Flow(i=i, v_dc=v_dc, x_pv=x_pv, i_pv=i_pv, u_inv=u_inv, i_mid=i_mid)
+
+
+@kernel
+def after_array(x: PlantState, found: SwitchedFlow, p: PlantParams) -> Flow:
+    """Flow of a step in which the link has felt the array's current of the step before, corrected by its own."""
+    v_mid = 0.5 * (x.v_dc + found.v_dc)
+    x_pv = diode_voltage(v_mid, p.G, x.x_pv, p.pv)
+    i_pv = array_current(v_mid, x_pv, p.pv)
+    v_dc = max(found.v_dc + p.T_S / p.C * (i_pv - x.i_pv), 0.0)
+    return Flow(i=found.i, v_dc=v_dc, x_pv=x_pv, i_pv=i_pv, u_inv=found.mean.u, i_mid=found.mean.i)
 
 
 @kernel
 def after_relays(x: PlantState, flow: Flow, mean: PeriodMean, e: complex, u_min: float, p: PlantParams) -> PlantState:
     """State after a plant step: where it has led to, what the relays and the breaker make of it."""
-    blocked = x.trip != NO_TRIP
+    tripped = x.trip != NO_TRIP
     u_pcc = terminal_voltage(x, flow.i_mid, flow.u_inv, e, p)
     relay, trip = relays_step(x.relay, u_pcc, flow.i, flow.v_dc, u_min, p.protection, p.T_S)
-    t_trip = x.t_trip + p.T_S if blocked else 0.0
+    t_trip = x.t_trip + p.T_S if tripped else 0.0
     return PlantState(
         i=flow.i,
         v_dc=flow.v_dc,
         x_pv=flow.x_pv,
         i_pv=flow.i_pv,
         relay=relay,
-        trip=x.trip if blocked else trip,
+        trip=x.trip if tripped else trip,
         t_trip=t_trip,
-        closed=x.closed and not (blocked and (flow.i == 0 or t_trip > p.t_breaker)),
+        closed=x.closed and not (tripped and (flow.i == 0 or t_trip > p.t_breaker)),
+        blocked=x.blocked,
         mean=mean,
     )
 
@@ -227,6 +214,14 @@ def plant_step(x: PlantState, m: complex, e: complex, u_min: float, p: PlantPara
 
 
 @kernel
+def blocked_plant_step(x: PlantState, e: complex, u_min: float, p: PlantParams) -> PlantState:
+    """Advance by one plant step under a blocked bridge; ``e`` is the source (V) at its middle."""
+    source = e if x.closed else 0j  # of an open line: no potential turns a diode on
+    found = blocked_flow(x.i if x.closed else 0j, x.v_dc, x.i_pv, source, p.line, p.C, p.T_S, drop_of(p.devices))
+    return after_relays(x, after_array(x, found, p), x.mean, e, u_min, p)
+
+
+@kernel
 def switched_plant_step(
     x: PlantState, pulses: Pulses, n: int, e: complex, u_min: float, p: PlantParams, devices: DeviceParams
 ) -> PlantState:
@@ -235,12 +230,7 @@ def switched_plant_step(
     Second order: the link first feels the array's current of the step before, which is then corrected by its own.
     """
     found = switched_flow(x.i, x.v_dc, x.i_pv, e, n, pulses, p.line, p.C, p.T_S, devices)
-    v_mid = 0.5 * (x.v_dc + found.v_dc)
-    x_pv = diode_voltage(v_mid, p.G, x.x_pv, p.pv)
-    i_pv = array_current(v_mid, x_pv, p.pv)
-    v_dc = found.v_dc + p.T_S / p.C * (i_pv - x.i_pv)
-    flow = Flow(i=found.i, v_dc=v_dc, x_pv=x_pv, i_pv=i_pv, u_inv=found.mean.u, i_mid=found.mean.i)
-    return after_relays(x, flow, added_to_mean(x.mean, found.mean, n, p.ratio), e, u_min, p)
+    return after_relays(x, after_array(x, found, p), added_to_mean(x.mean, found.mean, n, p.ratio), e, u_min, p)
 
 
 @kernel
@@ -263,9 +253,9 @@ def either_plant_step(
     devices: DeviceParams | None,
 ) -> PlantState:
     """Advance by plant step ``n`` of a period: switched where there are devices and the bridge is not blocked."""
+    if is_blocked(x):
+        return blocked_plant_step(x, e, u_min, p)
     if devices is None or pulses is None:
-        return plant_step(x, m, e, u_min, p)
-    if x.trip != NO_TRIP:
         return plant_step(x, m, e, u_min, p)
     return switched_plant_step(x, pulses, n, e, u_min, p, devices)
 

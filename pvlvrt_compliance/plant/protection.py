@@ -11,7 +11,7 @@ from pvlvrt_compliance.sogi import SogiState, in_steady_state, sequences, sogi_s
 from pvlvrt_compliance.space_vectors import SQRT2_3, SQRT3_2
 from pvlvrt_compliance.vectors import Rotation, scaled
 
-NO_TRIP, OVERCURRENT, DC_OVERVOLTAGE, UNDERVOLTAGE, FREQUENCY = range(5)
+NO_TRIP, OVERCURRENT, DC_OVERVOLTAGE, UNDERVOLTAGE, FREQUENCY, BY_CONTROLLER = range(6)
 """Causes of a trip by code; `waveforms.trip_causes` has them in words."""
 
 _K = math.sqrt(2)  # gain of the relay's own quadrature generator, fixed at the nominal frequency

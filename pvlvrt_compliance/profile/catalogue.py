@@ -4,15 +4,13 @@ from collections.abc import Iterator
 from itertools import accumulate
 from typing import Any
 
-from pydantic import ValidationError
-
 from pvlvrt_compliance.data.marks import weakest
-from pvlvrt_compliance.data.problems import dotted, problem_lines
+from pvlvrt_compliance.data.models import made
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.profile.curves import Envelope
 from pvlvrt_compliance.profile.procedure import BY_ENVELOPE, Procedure, StepSequence, TestCase, TestRow
 from pvlvrt_compliance.profile.sequences import Step
-from pvlvrt_compliance.scenario.events import FurtherSag, VoltageProfile
+from pvlvrt_compliance.scenario.events import LONGEST_S, FurtherSag, VoltageProfile
 from pvlvrt_compliance.scenario.sag import PhaseNames, Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 
@@ -37,11 +35,7 @@ def make_scenario(procedure: Procedure, **fields: Any) -> Scenario:
     shared = {"before_s": procedure.before_s.value, "after_s": procedure.after_s.value}
     if procedure.frequency_hz is not None:
         shared["frequency_hz"] = procedure.frequency_hz.value
-    try:
-        return Scenario.model_validate(shared | fields)
-    except ValidationError as error:
-        problems = (f"{dotted(location)}: {text}" for location, text in problem_lines(error, Scenario))
-        raise UsageError("; ".join(problems)) from None
+    return made(Scenario, shared | fields)
 
 
 def expand(
@@ -75,6 +69,11 @@ def expand(
                 expect=row.expect,
                 by_s=row.by_s,
             )
+
+
+def count_of(row: TestRow, procedure: Procedure) -> int:
+    """How many runs a row stands for."""
+    return len(row.powers) * len(_angles_deg(row, procedure))
 
 
 def _scenario_fields(row: TestRow, procedure: Procedure, envelope: Envelope | None) -> dict[str, Any]:
@@ -122,11 +121,13 @@ def _steps(sequence: StepSequence, procedure: Procedure) -> tuple[float, tuple[V
     except ValueError as error:
         raise UsageError(f"steps.{error}") from None
     ends = list(accumulate(step.duration_s for step in steps))
+    if ends[-1] > LONGEST_S:
+        raise UsageError(f"steps.order: the steps last {ends[-1]:g} s; {LONGEST_S:g} s are allowed")
     begins = [0.0, *ends[:-1]]
     if sequence.phases != "abc":
         return ends[-1], tuple(_step_of(sequence.phases, *each) for each in zip(begins, steps, strict=True))
     levels = [(t, step.voltage_pu) for step, *span in zip(steps, begins, ends, strict=True) for t in span]
-    return ends[-1], (VoltageProfile(points=((0.0, 1.0), *levels, (ends[-1], 1.0))),)
+    return ends[-1], (made(VoltageProfile, {"points": ((0.0, 1.0), *levels, (ends[-1], 1.0))}),)
 
 
 def _step_of(phases: PhaseNames, t_s: float, step: Step) -> FurtherSag:

@@ -3,11 +3,13 @@
 from collections.abc import Iterator
 
 from pvlvrt_compliance.data.marks import weakest
+from pvlvrt_compliance.data.models import made
+from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.profile.curves import Side
 from pvlvrt_compliance.profile.procedure import TestRow
-from pvlvrt_compliance.profile.regions import FOR_EVER, STAY_CONNECTED, LinearTime, Region, RegionTable
+from pvlvrt_compliance.profile.regions import STAY_CONNECTED, LinearTime, Region, RegionTable
 from pvlvrt_compliance.profile.sequences import CornerTests
-from pvlvrt_compliance.scenario.events import VoltageProfile
+from pvlvrt_compliance.scenario.events import LONGEST_S, VoltageProfile
 from pvlvrt_compliance.scenario.sag import PhaseNames, Sag
 
 
@@ -31,12 +33,14 @@ def _corners_pu(region: Region, side: Side, inside_pu: float) -> tuple[float, ..
 
 def _row(table: RegionTable, tests: CornerTests, region: Region, voltage_pu: float, phases: PhaseNames) -> TestRow:
     ride_s = region.ride_through_s(voltage_pu)
-    assert ride_s < FOR_EVER  # the caller leaves out what must be ridden through for ever
     duration_s = round(ride_s - tests.inside_s, 6)
+    if not 0 < duration_s <= LONGEST_S:
+        said = f"a test just inside {voltage_pu:g} pu would last {duration_s:g} s"
+        raise UsageError(f"{said}; above 0 s and up to {LONGEST_S:g} s are allowed")
     swell = voltage_pu > 1
     where = "" if phases == "abc" else f"-{phases}"
     step = VoltageProfile(points=((0.0, 1.0), (0.0, voltage_pu), (duration_s, voltage_pu), (duration_s, 1.0)))
-    return TestRow(
+    fields = dict(
         id=f"{voltage_pu:.3f}pu-{ride_s:g}s{where}",
         title=f"{region.mode.replace('_', ' ')} at {voltage_pu:.3f} pu for {duration_s:g} s, phases {phases}",
         clause=tests.clause or table.clause,
@@ -49,3 +53,4 @@ def _row(table: RegionTable, tests: CornerTests, region: Region, voltage_pu: flo
         confidence=weakest([tests.confidence, table.confidence]),
         source=f"{tests.source}; {table.source}",
     )
+    return made(TestRow, fields)

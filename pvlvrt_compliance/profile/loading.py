@@ -1,14 +1,18 @@
 """Profiles by name or from files, with all problems at once."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 from pvlvrt_compliance.data.merging import Merged, merge_file
 from pvlvrt_compliance.data.models import validated
+from pvlvrt_compliance.data.positions import Location
+from pvlvrt_compliance.data.reader import Source
 from pvlvrt_compliance.data.search_path import find_profile, is_path, known_profiles, origin_of
-from pvlvrt_compliance.data.text import kind_of
 from pvlvrt_compliance.errors import ProfileError, UsageError, did_you_mean
+from pvlvrt_compliance.ordinary_file import kind_of
 from pvlvrt_compliance.profile.profile import SCHEMA_VERSION, Profile, profile_of
 from pvlvrt_compliance.profile.requirements import BUILT_IN, Kinds
+from pvlvrt_compliance.scenario.events import recordings_named
 
 
 def load_profile(name_or_path: str, kinds: Kinds = BUILT_IN) -> Profile:
@@ -83,5 +87,21 @@ def _validate(merged: Merged, model: type[Profile]) -> tuple[Profile | None, lis
     table = merged.table | {"schema_version": SCHEMA_VERSION}
     profile, problems = validated(model, table)
     if profile is not None:
+        profile = _with_recordings_named(profile, merged)
         problems = profile.inconsistencies()
     return profile, [merged.describe(where, text) for where, text in problems]
+
+
+def _with_recordings_named(profile: Profile, merged: Merged) -> Profile:
+    """A profile whose recordings are named by the files that their rows come from."""
+    rows = list(profile.rows)
+    for index, row in enumerate(rows):
+        if any(event.kind == "recording" for event in row.events):
+            source, (*place, _) = merged.said_by(("tests", index, "events", 0))
+            events = recordings_named(row.events, source.path.parent, _places(source, tuple(place)))
+            rows[index] = row.model_copy(update={"events": events})
+    return profile.model_copy(update={"rows": tuple(rows)})
+
+
+def _places(source: Source, events: Location) -> Callable[[int], str]:
+    return lambda index: source.problem((*events, index, "file"), "")

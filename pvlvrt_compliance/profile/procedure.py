@@ -1,5 +1,6 @@
 """How a profile is tested: which sags, at which power, how often, and when a test counts at all."""
 
+import math
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidatorFunctionWrapHandler, WrapValidator, model_validator
@@ -7,7 +8,8 @@ from pydantic import Field, ValidatorFunctionWrapHandler, WrapValidator, model_v
 from pvlvrt_compliance.data.marks import CONFIDENCES, Fraction, Frozen, Marked, NotNegative, Number, Numbers, Positive
 from pvlvrt_compliance.profile.ids import ID_PATTERN
 from pvlvrt_compliance.profile.sequences import CornerTests, StepTable
-from pvlvrt_compliance.scenario.events import Event
+from pvlvrt_compliance.scenario.events import Events
+from pvlvrt_compliance.scenario.grid import ResistanceRatio, ShortCircuitRatio
 from pvlvrt_compliance.scenario.sag import PhaseNames, Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 
@@ -17,7 +19,7 @@ BY_ENVELOPE = "envelope"
 def _duration(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
     """One problem for the whole field, where a plain union would report one for each of its members."""
     is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if value != BY_ENVELOPE and not (is_number and value > 0):
+    if value != BY_ENVELOPE and not (is_number and 0 < value < math.inf):
         raise ValueError(f'must be a time above 0 s, or "{BY_ENVELOPE}", not {value!r}')
     return handler(value)
 
@@ -89,15 +91,15 @@ class Procedure(Frozen):
 class Grid(Frozen):
     """The grid of one test."""
 
-    scr: float = Field(gt=0.5, description="short-circuit ratio")
-    xr: float = Field(default=10.0, gt=0)
+    scr: ShortCircuitRatio = Field(description="short-circuit ratio")
+    xr: ResistanceRatio = 10.0
 
 
 class StepSequence(Frozen):
     """Named steps one after the other."""
 
     table: str = Field(description="one of procedure.steps")
-    order: str = Field(min_length=1, description="letters of the steps, each with its primes: ABCD'F")
+    order: str = Field(min_length=1, max_length=1000, description="letters of the steps, each with its primes: ABCD'F")
     phases: PhaseNames = Field(default="abc", description="that the steps are of; those of some phases go up to 1 pu")
 
 
@@ -115,7 +117,7 @@ class TestRow(Marked):
     sag: Sag = Field(default=Sag(depth=0), description="without it, only the events happen")
     duration_s: Duration | None = Field(default=None, description="of the sag; of steps, what they last")
     steps: StepSequence | None = None
-    events: tuple[Event, ...] = Field(default=(), description="what happens besides; times from the start of the sag")
+    events: Events = Field(default=(), description="what happens besides; times from the start of the sag")
     grid: Grid | None = Field(default=None, description="none: stiff")
     vector_group: str | None = None
     powers: tuple[str, ...] = Field(min_length=1)

@@ -4,13 +4,14 @@ import hashlib
 import re
 from collections.abc import Collection, Iterator
 from functools import cache, cached_property
+from itertools import islice
 from typing import Any, Literal
 
 from pydantic import Field, create_model
 
 from pvlvrt_compliance.data.marks import VERIFIED, canonical_json, marks_in, weakest
 from pvlvrt_compliance.errors import UsageError, did_you_mean
-from pvlvrt_compliance.profile.catalogue import expand, make_scenario, sag_duration_s
+from pvlvrt_compliance.profile.catalogue import count_of, expand, make_scenario, sag_duration_s
 from pvlvrt_compliance.profile.corners import corner_rows
 from pvlvrt_compliance.profile.curves import Envelope
 from pvlvrt_compliance.profile.head import Head
@@ -28,6 +29,9 @@ from pvlvrt_compliance.profile.thresholds import STANDARD_THRESHOLDS, Thresholds
 from pvlvrt_compliance.scenario.sag import Sag
 
 SCHEMA_VERSION = 1
+
+MOST_TESTS = 5000
+"""Runs that the test table of one profile may stand for: chosen, fifty times what any ships with."""
 
 _AD_HOC, _PERCENT = "sag", "pct"
 
@@ -52,7 +56,7 @@ class Profile(Head):
         regions = self.ride_through.regions if self.ride_through else None
         if regions is None or self.procedure.corners is None:
             return self.rows
-        return (*self.rows, *corner_rows(regions, self.procedure.corners))
+        return (*self.rows, *islice(corner_rows(regions, self.procedure.corners), MOST_TESTS + 1))
 
     @cached_property
     def expanded(self) -> dict[int, tuple[TestCase, ...]]:
@@ -168,6 +172,16 @@ class Profile(Head):
         """Problems that no single key shows: rows that cannot be expanded, ids that occur twice. Location and text."""
         problems: list[tuple[tuple[int | str, ...], str]] = []
         ids = set[str]()
+        try:
+            counts = [count_of(row, self.procedure) for row in self.all_rows]
+        except UsageError as error:
+            return [(("procedure", "corners"), str(error))]
+        if sum(counts) > MOST_TESTS:
+            own: dict[tuple[int | str, ...], int] = {("tests", k): counts[k] for k in range(len(self.rows))}
+            own["procedure", "corners"] = sum(counts[len(self.rows) :])
+            most = max(own, key=own.__getitem__)
+            said = f"rows x powers x points_on_wave_deg make {sum(counts)} tests, {own[most]} of them here"
+            return [(most, f"{said}; {MOST_TESTS} are allowed")]
         if self.procedure.corners is not None and len(self.all_rows) == len(self.rows):
             needed = "needs requirements.ride_through.regions with times to stay connected"
             problems.append((("procedure", "corners"), needed))

@@ -6,6 +6,7 @@ from typing import Self
 from pydantic import Field, model_validator
 
 from pvlvrt_compliance.data.marks import Frozen, Marked
+from pvlvrt_compliance.scenario.events import LONGEST_S, SHORTEST_S
 from pvlvrt_compliance.scenario.sag import PhaseNames
 
 _STEP = re.compile(r"[A-Z]'*")
@@ -15,7 +16,7 @@ class Step(Frozen):
     """A voltage of all phases, held."""
 
     voltage_pu: float = Field(ge=0, le=2)
-    duration_s: float = Field(gt=0)
+    duration_s: float = Field(ge=SHORTEST_S, le=LONGEST_S)
 
 
 class StepTable(Marked):

@@ -20,6 +20,7 @@ from pvlvrt_compliance.settings.reading import CONFIG
 from pvlvrt_compliance.study.job import Asked, make_job
 from pvlvrt_compliance.study.one_by_one import OneByOne
 from pvlvrt_compliance.study.selection import Assignment
+from pvlvrt_compliance.texts import one_line, printable
 from pvlvrt_compliance.trust import distrust
 
 _OF_PYTEST = ("last_failed", "failed_first", "fail_fast")
@@ -58,7 +59,7 @@ class SettingsFile(pytest.File):
 
     def _items(self) -> Iterator[pytest.Item]:
         if read_file(self.path) is None:
-            raise self.CollectError(f"{self.path}: there is no table [tool.pvlvrt]")
+            raise self.CollectError(f"{one_line(str(self.path))}: there is no table [tool.pvlvrt]")
         holds = effective(SETTINGS, {}, os.environ, start=Path.cwd(), config=str(self.path))
         asked, others = given_options(holds.given, [field.name for field in fields(Asked)])
         if not (self.named or "profiles" in asked):
@@ -76,10 +77,12 @@ class SettingsFile(pytest.File):
         named = self.named or (config and Path(config).resolve() == self.path.resolve())
         if not named and (reason := distrust(self.path)):
             on = f"pytest {self.path.name} uses it all the same, --ignore={self.path.name} leaves it out"
-            raise self.CollectError(f"{self.path} is not used: {reason}, and it may name code to run; {on}")
+            raise self.CollectError(printable(f"{self.path} is not used: {reason}, and it may name code to run; {on}"))
 
     def _tell(self, holds: Effective) -> None:
-        self.told += [f"pvlvrt-check: {line}" for line in (holds.in_words, *holds.put_aside, *holds.warnings)]
+        self.told += [
+            printable(f"pvlvrt-check: {line}") for line in (holds.in_words, *holds.put_aside, *holds.warnings)
+        ]
 
 
 class GridCodeItem(pytest.Item):

@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.ordinary_file import NotOrdinaryError, TooLargeError, content_of
 
 LARGEST_BYTES = 1_000_000
 ALLOWED = "a PNG, JPEG or SVG file of at most 1 MB"
@@ -34,17 +35,12 @@ def logo_address(name: str, spelled: str) -> str:
     UsageError
         When it cannot be read, or is none of what is `ALLOWED`.
     """
-    path = Path(name)
     try:
-        if not path.is_file():
-            raise UsageError(f"{spelled}: {name}: {_not_a_file(path)}; a logo is {ALLOWED}")
-        with path.open("rb") as opened:
-            content = opened.read(LARGEST_BYTES + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise UsageError(f"{spelled}: {name}: {reason}; a logo is {ALLOWED}") from None
-    if len(content) > LARGEST_BYTES:
-        raise UsageError(f"{spelled}: {name}: larger than 1 MB; a logo is {ALLOWED}")
+        content = content_of(Path(name), LARGEST_BYTES)
+    except TooLargeError:
+        raise UsageError(f"{spelled}: {name}: larger than 1 MB; a logo is {ALLOWED}") from None
+    except NotOrdinaryError as error:
+        raise UsageError(f"{spelled}: {name}: {error}; a logo is {ALLOWED}") from None
     kind = _kind(content)
     if kind is None:
         raise UsageError(f"{spelled}: {name}: no picture of a kind that is known; a logo is {ALLOWED}")
@@ -61,10 +57,6 @@ def logo_content(address: str) -> tuple[str, bytes] | None:
         return found[1], base64.b64decode(found[2], validate=True)
     except ValueError:
         return None
-
-
-def _not_a_file(path: Path) -> str:
-    return "not an ordinary file" if path.exists() else "no such file"
 
 
 def _kind(content: bytes) -> str | None:

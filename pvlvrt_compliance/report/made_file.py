@@ -1,7 +1,11 @@
-"""What was made of records, as a file: plain JSON that makes nothing but data when it is read."""
+"""What was made of records, as a file: plain JSON that makes nothing but data when it is read.
+
+Whoever has written it may have written anything: what becomes markup of a report is looked at.
+"""
 
 import base64
 import json
+import re
 from collections.abc import Mapping
 from types import ModuleType
 from typing import Any
@@ -9,6 +13,9 @@ from typing import Any
 import numpy as np
 
 from pvlvrt_compliance.report.drawing import in_page, model
+from pvlvrt_compliance.report.drawing.model import BLACK
+from pvlvrt_compliance.report.page import section
+from pvlvrt_compliance.report.page.received import checked
 
 
 def _tuples_of(*modules: ModuleType) -> dict[str, type[Any]]:
@@ -20,8 +27,11 @@ def _tuples_of(*modules: ModuleType) -> dict[str, type[Any]]:
     }
 
 
-_TUPLES = _tuples_of(model, in_page)
+_TUPLES = _tuples_of(model, in_page, section)
 """The tuples with names that may stand in it, by theirs."""
+
+_COLOURS = ("colour", "words_colour")
+_COLOUR = re.compile("#[0-9A-Fa-f]{6}")
 
 _NAMES = {made: name for name, made in _TUPLES.items()}
 
@@ -61,6 +71,8 @@ def _taken_apart(item: Any) -> tuple[str, list[Any]]:
         return "array", [item.dtype.str, list(item.shape), data]
     if isinstance(item, Mapping):
         return "mapping", [[_plain(key), _plain(value)] for key, value in item.items()]
+    if isinstance(item, section.Section):
+        item = item.without_words()  # whoever reads it says himself what he has found: markup of others is not his
     if isinstance(item, tuple):
         return _NAMES.get(type(item), "tuple"), [_plain(part) for part in item]
     return "", []
@@ -78,4 +90,12 @@ def _made(item: Any) -> Any:
     if kind == "mapping":
         return {_made(key): _made(value) for key, value in parts}
     made = [_made(part) for part in parts]
-    return tuple(made) if kind == "tuple" else _TUPLES[kind](*made)
+    return tuple(made) if kind == "tuple" else _looked_at(_TUPLES[kind](*made))
+
+
+def _looked_at(made: Any) -> Any:
+    """A tuple with names, unless it has what would be markup of somebody else's."""
+    for name in _COLOURS:
+        if not _COLOUR.fullmatch(getattr(made, name, BLACK)):
+            raise ValueError(f"{name} is {getattr(made, name)[:40]!r}")
+    return checked(made) if isinstance(made, section.Section) else made

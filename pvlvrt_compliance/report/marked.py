@@ -7,8 +7,9 @@ requests, labels and milestones, emoji by their names, addresses, mathematics.
 import re
 from collections.abc import Iterable, Sequence
 
+from pvlvrt_compliance.texts import printable
+
 _BREAK = "\u200b"
-_UNSEEN = "\ufffd"
 
 _MARKUP = re.compile(r"[\\`*_\[\]|~$]")
 _CALLS = re.compile(r"([@#!~$%^&])(?=[\w\"'])|(:)(?=[\w+-]+:)|(:)(?=//)|(www)(?=\.)|\b(GH-)(?=\d)", re.IGNORECASE)
@@ -21,8 +22,7 @@ _WHITE = 8  # times as long a text, white space in it included, is looked at as 
 def plain(text: str, longest: int | None = None) -> str:
     """A text of anybody's on one line, to stand within a paragraph or a cell; cut behind so many characters."""
     begin = text if longest is None else text[: _WHITE * longest]
-    line = " ".join(begin.split())
-    line = "".join(each if each.isprintable() else _UNSEEN for each in line)  # controls, directions, halves of letters
+    line = " ".join(printable(begin, None).split())
     if longest is not None and len(line) > longest:
         line = f"{line[: longest - 1].rstrip()}…"
     escaped = _MARKUP.sub(r"\\\g<0>", _CALLS.sub(rf"\g<0>{_BREAK}", line).translate(_ENTITIES))

@@ -4,6 +4,8 @@ from typing import Self
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, model_validator
 
+from pvlvrt_compliance.texts import Name
+
 VOLTAGE_POSITIVE, VOLTAGE_NEGATIVE, CURRENT = "voltage_positive_pu", "voltage_negative_pu", "current_pu"
 ACTIVE_POWER, REACTIVE_POWER, DC_VOLTAGE = "active_power_kw", "reactive_power_kvar", "dc_voltage_v"
 REACTIVE_CURRENT, REACTIVE_CURRENT_NEGATIVE = "reactive_current_pu", "reactive_current_negative_pu"
@@ -36,9 +38,9 @@ class Band(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="ignore")
 
-    check: str = Field(description="kind of the requirement")
-    quantity: str
-    name: str = Field(description="in the legend")
+    check: Name = Field(description="kind of the requirement")
+    quantity: Name
+    name: Name = Field(description="in the legend")
     t_s: Line = Field(min_length=1, description="from the start of the record")
     lower: Line | None = None
     upper: Line | None = None
@@ -47,7 +49,7 @@ class Band(BaseModel):
         default=False, description="limits a swing about a straight line, which lies midway between lower and upper"
     )
     half_cycle: bool = Field(default=False, description="of means over half a cycle, not over one")
-    region: str | None = Field(
+    region: Name | None = Field(
         default=None, description="mode of operation while the quantity is in it; none: it must not be left"
     )
 

@@ -1,16 +1,12 @@
 """What a run found that its baseline says otherwise, besides what stands with each verdict."""
 
-from typing import Annotated
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, FiniteFloat
-
-from pvlvrt_compliance.texts import all_printable
+from pvlvrt_compliance.texts import Name, Text
 
 TOLERANCE = 0.01
 """Share of |limit| + tolerance by which a margin may be lost, chosen: far above what another processor changes
 (1e-9) and what a file rounds off (which is allowed for besides), and no more than most verdicts are sure of."""
-
-_Words = Annotated[str, BeforeValidator(all_printable)]
 
 
 class _Frozen(BaseModel):
@@ -20,10 +16,10 @@ class _Frozen(BaseModel):
 class BaselineNote(_Frozen):
     """An entry of a baseline that is out of date."""
 
-    test: _Words = Field(description="profile and id")
-    check: _Words
-    was: _Words = Field(description="what the entry says: fail, -0.086 pu")
-    now: _Words = Field(description="what was found, or why nothing can be")
+    test: Name = Field(description="profile and id")
+    check: Name
+    was: Text = Field(description="what the entry says: fail, -0.086 pu")
+    now: Text = Field(description="what was found, or why nothing can be")
 
     @property
     def in_words(self) -> str:
@@ -34,8 +30,8 @@ class BaselineNote(_Frozen):
 class BaselineSummary(_Frozen):
     """The baseline that a run was held against; what it knows, and what is worse, stands with the verdicts."""
 
-    file: _Words = Field(description="as it was named")
-    digest: str = Field(description="SHA-256 of its text, whatever ends its lines")
+    file: Name = Field(description="as it was named")
+    digest: Name = Field(description="SHA-256 of its text, whatever ends its lines")
     tolerance: FiniteFloat = Field(description="by what share of |limit| + tolerance a margin may be lost")
     better: tuple[BaselineNote, ...] = Field(default=(), description="what is better than its entry says")
     gone: tuple[BaselineNote, ...] = Field(default=(), description="entries of tests and checks that there are not")

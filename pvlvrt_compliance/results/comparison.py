@@ -25,6 +25,7 @@ from pvlvrt_compliance.results.differences import (
 )
 from pvlvrt_compliance.results.results import Results
 from pvlvrt_compliance.results.verdict import JUDGED, Status, Verdict
+from pvlvrt_compliance.texts import Name
 from pvlvrt_compliance.units import parse_fraction
 
 COMPARISON_VERSION = 1
@@ -60,8 +61,8 @@ class FailOn(NamedTuple):
 class Changed(_Frozen):
     """One verdict that is not in both runs what it was."""
 
-    test: str = Field(description="with its profile: profile.test")
-    check: str = Field(description="the second of one name in a test is `check (2)`, as in junit.xml")
+    test: Name = Field(description="with its profile: profile.test")
+    check: Name = Field(description="the second of one name in a test is `check (2)`, as in junit.xml")
     what: What
     change: Change = Field(description="of a margin, whatever the share that it has lost or gained")
     regression: bool = Field(description="whether it counts, by what was asked for")
@@ -96,13 +97,13 @@ class Changed(_Frozen):
 class Compared(_Frozen):
     """One of the two runs."""
 
-    name: str = Field(description="as whoever compares has named it: a file, a folder, a controller")
-    run_id: str = ""
+    name: Name = Field(description="as whoever compares has named it: a file, a folder, a controller")
+    run_id: Name = ""
     status: Status
     tests: int
     counts: dict[Status, int] = Field(description="verdicts by status, worst first")
-    controller: str = ""
-    created: str = ""
+    controller: Name = ""
+    created: Name = ""
 
 
 class Comparison(_Frozen):
@@ -111,15 +112,15 @@ class Comparison(_Frozen):
     comparison_version: int = COMPARISON_VERSION
     old: Compared
     new: Compared
-    fail_on: str = Field(default=VERDICT, description="`verdict`, or `margin:` and a share of the limit")
+    fail_on: Name = Field(default=VERDICT, description="`verdict`, or `margin:` and a share of the limit")
     in_both: int = Field(description="verdicts that both runs have")
-    unchanged: dict[str, tuple[str, ...]] = Field(
+    unchanged: dict[Name, tuple[Name, ...]] = Field(
         default_factory=dict, description="checks by test whose verdicts are the same, and their margins but for noise"
     )
     changes: tuple[Changed, ...] = Field(
         default=(), description="regressions first, then what is worse, then what is better; the largest margin first"
     )
-    not_selected: dict[str, tuple[str, ...]] = Field(
+    not_selected: dict[Name, tuple[Name, ...]] = Field(
         default_factory=dict, description="checks by test of the old run that the new one was not asked for: no change"
     )
     profiles: tuple[ProfileDifference, ...] = Field(default=(), description="profiles that are not the same in both")

@@ -7,6 +7,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from pvlvrt_compliance.results.results import Results, TestResult
+from pvlvrt_compliance.texts import Id, Name, Plain, Text
 
 _Where = Literal["both", "old", "new"]
 
@@ -21,11 +22,11 @@ class Difference(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="ignore")
 
-    path: str = Field(description="names joined by dots: parameters.controller.fault_threshold_pu, versions.numpy")
+    path: Text = Field(description="names joined by dots: parameters.controller.fault_threshold_pu, versions.numpy")
     there: _Where = Field(default="both", description="which of the runs says anything of it")
-    old: Any = None
-    new: Any = None
-    tests: tuple[str, ...] = Field(default=(), description="of what only these tests were asked: their scenario")
+    old: Plain = None
+    new: Plain = None
+    tests: tuple[Name, ...] = Field(default=(), description="of what only these tests were asked: their scenario")
 
 
 class ProfileDifference(BaseModel):
@@ -33,10 +34,10 @@ class ProfileDifference(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="ignore")
 
-    id: str
+    id: Id
     there: _Where = "both"
-    old_digest: str = ""
-    new_digest: str = ""
+    old_digest: Name = ""
+    new_digest: Name = ""
 
 
 def profile_differences(old: Results, new: Results) -> tuple[ProfileDifference, ...]:

@@ -5,6 +5,7 @@ from typing import Self
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, model_validator
 
 from pvlvrt_compliance.results.band import Band, Line
+from pvlvrt_compliance.texts import Name
 
 
 class _Frozen(BaseModel):
@@ -15,8 +16,8 @@ class SpectrumBar(_Frozen):
     """One component of a spectrum, or a total of several, in the phase that has the most of it."""
 
     order: int | None = Field(default=None, description="multiple of the fundamental; none: a total, see its name")
-    name: str = Field(default="", description="of a total: TRD, THD")
-    phase: str = ""
+    name: Name = Field(default="", description="of a total: TRD, THD")
+    phase: Name = ""
     measured: FiniteFloat
     limit: FiniteFloat = Field(description="at most")
 
@@ -24,20 +25,20 @@ class SpectrumBar(_Frozen):
 class Spectrum(_Frozen):
     """The components that were judged in one window of a record, each with its limit."""
 
-    check: str = Field(description="kind of the requirement")
+    check: Name = Field(description="kind of the requirement")
     start_s: FiniteFloat
     end_s: FiniteFloat
-    unit: str = "%"
+    unit: Name = "%"
     bars: tuple[SpectrumBar, ...] = Field(min_length=1)
 
 
 class Characteristic(_Frozen):
     """What one quantity must be at the values of another: above ``lower``, below ``upper``, straight lines between."""
 
-    check: str = Field(description="kind of the requirement")
-    over: str = Field(description="quantity that the limit depends on, named as the quantity of a band")
-    quantity: str = Field(description="quantity that is limited")
-    name: str = Field(description="in the legend")
+    check: Name = Field(description="kind of the requirement")
+    over: Name = Field(description="quantity that the limit depends on, named as the quantity of a band")
+    quantity: Name = Field(description="quantity that is limited")
+    name: Name = Field(description="in the legend")
     x: Line = Field(min_length=2, description="values of the former")
     lower: Line
     upper: Line
@@ -52,9 +53,9 @@ class Characteristic(_Frozen):
 class Instant(_Frozen):
     """When something that a time is demanded of has come, seen on the curve of a quantity."""
 
-    check: str = Field(description="kind of the requirement")
-    quantity: str = Field(description="named as that of a band")
-    name: str = Field(description="in the legend")
+    check: Name = Field(description="kind of the requirement")
+    quantity: Name = Field(description="named as that of a band")
+    name: Name = Field(description="in the legend")
     at_s: FiniteFloat = Field(description="from the start of the record")
     took_s: FiniteFloat
     limit_s: FiniteFloat = Field(description="at most")

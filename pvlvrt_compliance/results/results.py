@@ -15,6 +15,7 @@ from pvlvrt_compliance.results.details import ReportDetails
 from pvlvrt_compliance.results.drawn import Characteristic, Instant, Spectrum
 from pvlvrt_compliance.results.profile import ProfileSummary
 from pvlvrt_compliance.results.verdict import JUDGED, Status, Verdict, worst
+from pvlvrt_compliance.texts import Data, Id, Name, Text
 
 SCHEMA_VERSION = 1
 
@@ -47,12 +48,12 @@ class TestResult(_Frozen):
 
     __test__ = False  # not a test class, whatever pytest thinks of the name
 
-    id: str
-    profile: str = ""
-    title: str = ""
-    scenario: dict[str, Any] = Field(default_factory=dict)
+    id: Id
+    profile: Id = ""
+    title: Name = ""
+    scenario: Data = Field(default_factory=dict)
     disturbance: Disturbance | None = Field(default=None, description="what the grid did")
-    expect: str | None = Field(
+    expect: Name | None = Field(
         default=None,
         description="what a row demands: ride_through, may_trip or must_trip; none: a sag of the user's own",
     )
@@ -66,14 +67,14 @@ class TestResult(_Frozen):
     spectra: tuple[Spectrum, ...] = Field(default=(), description="what was judged by order, with its limits")
     characteristics: tuple[Characteristic, ...] = Field(default=(), description="limits over another quantity")
     instants: tuple[Instant, ...] = Field(default=(), description="when what a time is demanded of has come")
-    waveforms: str | None = Field(default=None, description="path of the waveforms, relative to results.json")
+    waveforms: Name | None = Field(default=None, description="path of the waveforms, relative to results.json")
     measurements: MeasuredWindows = MeasuredWindows()
     cursors: tuple[CursorStretch, ...] = Field(
         default=(), description="extremes, mean and response times of each stretch between steps, up to a trip"
     )
-    trip_cause: str | None = Field(default=None, description="what opened the breaker, in words")
-    clause: str = Field(default="", description="where the test procedure comes from")
-    confidence: str = Field(default="", description="mark of the test procedure's numbers")
+    trip_cause: Text | None = Field(default=None, description="what opened the breaker, in words")
+    clause: Name = Field(default="", description="where the test procedure comes from")
+    confidence: Name = Field(default="", description="mark of the test procedure's numbers")
     duration_s: FiniteFloat = Field(default=0.0, description="length of the record")
     wall_time_s: FiniteFloat = Field(
         default=0.0, description="what it took to run and to judge it; 0 where that is not known or the time is fixed"
@@ -101,7 +102,7 @@ class Results(_Frozen):
     """A whole run."""
 
     schema_version: int = SCHEMA_VERSION
-    run_id: str = Field(
+    run_id: Name = Field(
         default="",
         description="digest of what the run is and found, whenever that was; its junit.xml and report.html carry it",
     )
@@ -110,7 +111,7 @@ class Results(_Frozen):
         default=False, description="whether --allow-unjudged was given, for the exit status and junit.xml"
     )
     report: ReportDetails = Field(default=ReportDetails(), description="what was given for the report")
-    ended_at: str = Field(
+    ended_at: Name = Field(
         default="", description="profile and id of the test that the run ended at, the first not passed (--fail-fast)"
     )
     interrupted: bool = Field(
@@ -120,7 +121,7 @@ class Results(_Frozen):
         default=None, description="what the run was held against, and what of that is out of date"
     )
     profiles: tuple[ProfileSummary, ...] = ()
-    provenance: dict[str, Any] = Field(default_factory=dict)
+    provenance: Data = Field(default_factory=dict)
     tests: tuple[TestResult, ...] = ()
 
     def counts(self) -> dict[Status, int]:

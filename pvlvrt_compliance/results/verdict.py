@@ -3,11 +3,11 @@
 import re
 from collections.abc import Iterable
 from enum import StrEnum
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, FiniteFloat, computed_field
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, computed_field
 
-from pvlvrt_compliance.texts import all_printable
+from pvlvrt_compliance.texts import Id, Name, Text
 
 Bound = Literal["at_least", "at_most", "band"]
 """What a limit is, so that anyone recomputes the margin.
@@ -56,28 +56,26 @@ class Verdict(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="ignore", json_schema_extra=_with_marginal)
 
-    check: str = Field(description="name of the check, for instance reactive_support")
+    check: Id = Field(description="name of the check, for instance reactive_support")
     status: Status
     measured: FiniteFloat | None = None
     limit: FiniteFloat | None = None
     margin: FiniteFloat | None = Field(default=None, description="distance to failing, same unit, negative when failed")
-    unit: str = ""
+    unit: Name = ""
     bound: Bound | None = Field(default=None, description="what the limit is")
     tolerance: FiniteFloat = Field(default=0.0, description="that the limit is widened by, same unit")
     uncertainty: FiniteFloat | None = Field(
         default=None, description="what method and measurement leave open, same unit; none: not known"
     )
-    stretch: str = Field(default="", description="what of a record with several disturbances it speaks of")
+    stretch: Name = Field(default="", description="what of a record with several disturbances it speaks of")
     at_s: FiniteFloat | None = Field(default=None, description="the worst instant, from the start of the record")
-    clause: str = ""
-    confidence: str = Field(default="", description="the weakest mark of the numbers that the verdict rests on")
+    clause: Name = ""
+    confidence: Name = Field(default="", description="the weakest mark of the numbers that the verdict rests on")
     # A message may name a file, whose name need not be text.
-    message: Annotated[str, BeforeValidator(all_printable)] = ""
+    message: Text = ""
     known: bool = Field(default=False, description="a failure that the baseline knows, and that is no worse than there")
-    known_reason: Annotated[str, BeforeValidator(all_printable)] = Field(
-        default="", description="why it is lived with, as the baseline says"
-    )
-    worse: str = Field(
+    known_reason: Text = Field(default="", description="why it is lived with, as the baseline says")
+    worse: Text = Field(
         default="", description="what is worse than in the baseline, in words; such a verdict fails the run"
     )
 

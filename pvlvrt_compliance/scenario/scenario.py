@@ -7,7 +7,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
-from pvlvrt_compliance.scenario.events import Event
+from pvlvrt_compliance.scenario.events import LONGEST_S, SHORTEST_S, Events
+from pvlvrt_compliance.scenario.grid import ResistanceRatio, ShortCircuitRatio
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.units import nearest_nominal_frequency
 
@@ -45,15 +46,15 @@ class Scenario(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     sag: Sag
-    duration_s: float = Field(gt=0, le=3600, description="from the start of the sag to its clearing")
+    duration_s: float = Field(ge=SHORTEST_S, le=LONGEST_S, description="from the start of the sag to its clearing")
     point_on_wave_deg: float = Field(
         default=0.0, ge=-360, le=360, description="angle of phase a at the start; 0: maximum"
     )
     frequency_hz: float = Field(default=50.0, ge=FREQUENCY_MIN_HZ, le=FREQUENCY_MAX_HZ)
     irradiance_w_m2: float = Field(default=1000.0, ge=0, le=1500)
     cell_temperature_c: float = Field(default=25.0, ge=-40, le=90)
-    scr: float | None = Field(default=None, gt=0.5, description="short-circuit ratio on 500 kVA; none: stiff")
-    xr: float = Field(default=10.0, gt=0, description="X/R of the grid impedance")
+    scr: ShortCircuitRatio | None = Field(default=None, description="short-circuit ratio on 500 kVA; none: stiff")
+    xr: ResistanceRatio = Field(default=10.0, description="X/R of the grid impedance")
     vector_group: Annotated[str, BeforeValidator(_vector_group)] | None = Field(
         default=None,
         pattern=VECTOR_GROUP.pattern,
@@ -62,7 +63,7 @@ class Scenario(BaseModel):
     reactive_power_pu: float = Field(default=0.0, ge=-1, le=1, description="set-point outside of sags, of 500 kVA")
     before_s: float = Field(default=0.3, ge=0.25, le=60, description="record before the sag")
     after_s: float = Field(default=1.1, ge=0.1, le=120, description="record after clearing")
-    events: tuple[Event, ...] = Field(default=(), description="what happens besides; times from the start of the sag")
+    events: Events = Field(default=(), description="what happens besides; times from the start of the sag")
 
     def describe(self) -> str:
         """Name in a few words what happens, for tables and titles."""

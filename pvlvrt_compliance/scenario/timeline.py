@@ -1,6 +1,9 @@
 """A scenario as breakpoints: between two of them, voltages and frequency move along straight lines."""
 
 import math
+from bisect import bisect_right
+from collections import deque
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from pvlvrt_compliance.scenario.events import (
@@ -13,8 +16,9 @@ from pvlvrt_compliance.scenario.events import (
     PhaseJump,
     VoltageProfile,
 )
-from pvlvrt_compliance.scenario.sag import through_transformer
+from pvlvrt_compliance.scenario.sag import Sag, through_transformer
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.scenario.spans import Span, last_begun
 from pvlvrt_compliance.space_vectors import Sequences
 
 LONG_AGO_S = -1e3
@@ -37,32 +41,35 @@ class Entry(NamedTuple):
 def entries(scenario: Scenario) -> list[Entry]:
     """Breakpoints of the grid in order of time; the first lies before any run."""
     times = _breakpoints(scenario)
-    frequencies = [_frequency(scenario, t) for t in times]
+    frequencies = list(_frequencies(scenario, times))
+    jumps = _jumps(scenario)
     angles = [0.0]
     for index in range(1, len(times)):
         f, rate = frequencies[index - 1]
         dt = times[index] - times[index - 1]
-        angles.append(angles[-1] + 2 * math.pi * (f * dt + 0.5 * rate * dt**2) + _jump_at(scenario, times[index]))
+        angles.append(angles[-1] + 2 * math.pi * (f * dt + 0.5 * rate * dt**2) + jumps.get(times[index], 0.0))
     at_start = times.index(scenario.start_s)
-    anchor = math.radians(scenario.point_on_wave_deg) + _jump_at(scenario, scenario.start_s) - angles[at_start]
+    anchor = math.radians(scenario.point_on_wave_deg) + jumps.get(scenario.start_s, 0.0) - angles[at_start]
+    voltages, grids = _voltages(scenario, times), _grids(scenario, times)
     return [
-        Entry(
-            t,
-            math.remainder(angles[k] + anchor, 2 * math.pi),
-            *frequencies[k],
-            *_voltages(scenario, t, last=k == len(times) - 1),
-            *_grid(scenario, t),
-        )
-        for k, t in enumerate(times)
+        Entry(t, math.remainder(angle + anchor, 2 * math.pi), *frequency, *voltage, *grid)
+        for t, angle, frequency, voltage, grid in zip(times, angles, frequencies, voltages, grids, strict=True)
     ]
 
 
 def irradiance_points(scenario: Scenario) -> list[tuple[float, float]]:
-    """Irradiance as points (s from the start of the record, W/m2) joined by straight lines."""
+    """Irradiance as points (s from the start of the record, W/m2) in order of time, joined by straight lines.
+
+    A change ends the ramp before it, where it is.
+    """
     points = [(LONG_AGO_S, scenario.irradiance_w_m2)]
     for event in sorted((e for e in scenario.events if isinstance(e, Irradiance)), key=lambda e: e.t_s):
         t = scenario.start_s + event.t_s
-        points += [(t, points[-1][1]), (t + event.ramp_s, event.to_w_m2)]
+        (begin_s, first), (end_s, level) = points[-2:] if len(points) > 1 else points * 2
+        if t < end_s:
+            points.pop()
+            level = first + (level - first) * (t - begin_s) / (end_s - begin_s)
+        points += [(t, level), (t + event.ramp_s, event.to_w_m2)]
     return points
 
 
@@ -82,8 +89,19 @@ def busy_stretches(scenario: Scenario) -> list[tuple[float, float]]:
 
 def asked_sequences_pu(scenario: Scenario, t_s: float) -> Sequences:
     """Symmetrical components that the source is asked for at an instant from the start of the record (pu)."""
-    factor, _ = _profile(scenario, t_s)
-    return Sequences(*(factor * part for part in _sagged(scenario, t_s)))
+    ((factor, _),) = _profiles(scenario, [t_s])
+    (sagged,) = _sagged(scenario, [t_s])
+    return Sequences(*(factor * part for part in sagged))
+
+
+def sag_spans(scenario: Scenario) -> list[Span[Sag]]:
+    """Begin and end of every sag (s from the start of the record), that of the test first."""
+    spans = [Span(scenario.start_s, scenario.clear_s, scenario.sag)]
+    for event in scenario.events:
+        if isinstance(event, FurtherSag):
+            begin_s = scenario.start_s + event.t_s
+            spans.append(Span(begin_s, begin_s + event.duration_s, event.sag))
+    return spans
 
 
 def _breakpoints(scenario: Scenario) -> list[float]:
@@ -98,75 +116,113 @@ def _breakpoints(scenario: Scenario) -> list[float]:
     return sorted(times)
 
 
-def _frequency(scenario: Scenario, t: float) -> tuple[float, float]:
-    """Frequency (Hz) and its rate of change (Hz/s) from an instant on."""
-    f, rate = scenario.frequency_hz, 0.0
-    events = (e for e in scenario.events if isinstance(e, FrequencyStep | FrequencyRamp))
-    for event in sorted(events, key=lambda e: e.t_s):
-        begin = scenario.start_s + event.t_s
-        if t < begin:
-            break
-        if isinstance(event, FrequencyStep):
-            f, rate = event.to_hz, 0.0
-        else:
-            # The end as `_breakpoints` has it: rounding must not let the ramp run on for the whole of the next entry.
-            running = t < begin + event.duration_s
-            f += event.rate_hz_s * (t - begin if running else event.duration_s)
-            rate = event.rate_hz_s if running else 0.0
-    return f, rate
+class _Moving(NamedTuple):
+    """What the frequency does from an instant on; a step is a ramp of no length."""
+
+    from_hz: float
+    rate_hz_s: float
+    begin_s: float
+    duration_s: float
+
+    def at(self, t: float) -> tuple[float, float]:
+        """Frequency (Hz) and its rate of change (Hz/s)."""
+        # The end as `_breakpoints` has it: rounding must not let the ramp run on for the whole of the next entry.
+        running = t < self.begin_s + self.duration_s
+        moved_hz = self.rate_hz_s * (t - self.begin_s if running else self.duration_s)
+        return self.from_hz + moved_hz, self.rate_hz_s if running else 0.0
 
 
-def _jump_at(scenario: Scenario, t: float) -> float:
-    jumps = (e for e in scenario.events if isinstance(e, PhaseJump) and scenario.start_s + e.t_s == t)
-    return math.radians(sum(jump.angle_deg for jump in jumps))
+def _frequencies(scenario: Scenario, times: Sequence[float]) -> Iterator[tuple[float, float]]:
+    """Frequency (Hz) and its rate of change (Hz/s) from each instant on: a ramp or step ends the ramp before it."""
+    found = [event for event in scenario.events if isinstance(event, FrequencyStep | FrequencyRamp)]
+    ahead = deque(sorted(found, key=lambda event: event.t_s))
+    now = _Moving(scenario.frequency_hz, 0.0, times[0], 0.0)
+    for t in times:
+        while ahead and (begin_s := scenario.start_s + ahead[0].t_s) <= t:
+            event = ahead.popleft()
+            if isinstance(event, FrequencyStep):
+                now = _Moving(event.to_hz, 0.0, begin_s, 0.0)
+            else:
+                now = _Moving(now.at(begin_s)[0], event.rate_hz_s, begin_s, event.duration_s)
+        yield now.at(t)
 
 
-def _sagged(scenario: Scenario, t: float) -> Sequences:
-    sags = [(scenario.start_s, scenario.clear_s, scenario.sag)]
+def _jumps(scenario: Scenario) -> dict[float, float]:
+    """Jump of the angle (rad) at each instant that has one."""
+    jumps_deg: dict[float, float] = {}
     for event in scenario.events:
-        if isinstance(event, FurtherSag):
-            begin = scenario.start_s + event.t_s
-            sags.append((begin, begin + event.duration_s, event.sag))
-    holding = [(begin, sag) for begin, end, sag in sags if begin <= t < end]
-    if not holding:
-        return Sequences(1 + 0j, 0j, 0j)
-    sequences = max(reversed(holding), key=lambda item: item[0])[1].sequences_pu()
-    return sequences if scenario.vector_group is None else through_transformer(sequences, scenario.vector_group)
+        if isinstance(event, PhaseJump):
+            at_s = scenario.start_s + event.t_s
+            jumps_deg[at_s] = jumps_deg.get(at_s, 0.0) + event.angle_deg
+    return {at_s: math.radians(angle_deg) for at_s, angle_deg in jumps_deg.items()}
 
 
-def _profile(scenario: Scenario, t: float) -> tuple[float, float]:
-    """Factor of the voltage profiles (pu) and its slope (pu/s) from an instant on."""
-    factor, slope = 1.0, 0.0
-    for event in scenario.events:
-        if isinstance(event, VoltageProfile):
-            level, rate = _along([(scenario.start_s + at, u) for at, u in event.points], t)
+def _sagged(scenario: Scenario, times: Sequence[float]) -> Iterator[Sequences]:
+    """Symmetrical components that the sags leave from each instant on (pu)."""
+    for sag in last_begun(sag_spans(scenario), times):
+        sequences = Sequences(1 + 0j, 0j, 0j) if sag is None else sag.sequences_pu()
+        beyond = sag is not None and scenario.vector_group is not None
+        yield through_transformer(sequences, str(scenario.vector_group)) if beyond else sequences
+
+
+def _profiles(scenario: Scenario, times: Sequence[float]) -> Iterator[tuple[float, float]]:
+    """Factor of the voltage profiles (pu) and its slope (pu/s) from each instant on.
+
+    A profile that has come to its end is the level that it holds, so that only those under way are looked at.
+    """
+    events = [event for event in scenario.events if isinstance(event, VoltageProfile)]
+    ahead = deque(sorted((_Course(scenario.start_s, k, event) for k, event in enumerate(events)), key=_Course.begins))
+    held, under_way = 1.0, list[_Course]()
+    for t in times:
+        while ahead and ahead[0].times[0] <= t:
+            under_way.append(ahead.popleft())
+        for course in sorted((course for course in under_way if course.times[-1] <= t), key=_Course.place_of):
+            held *= course.levels[-1]
+            under_way.remove(course)
+        factor, slope = held, 0.0
+        for course in sorted(under_way, key=_Course.place_of):
+            level, rate = course.at(t)
             factor, slope = factor * level, slope * level + factor * rate
-    return factor, slope
+        yield factor, slope
 
 
-def _along(points: list[tuple[float, float]], t: float) -> tuple[float, float]:
-    """Level and slope of a profile right after an instant: 1 before its first point, the last level held."""
-    after = [k for k, (at, _) in enumerate(points) if at > t]
-    if len(after) == len(points):
-        return 1.0, 0.0
-    if not after:
-        return points[-1][1], 0.0
-    (t_a, u_a), (t_b, u_b) = points[after[0] - 1], points[after[0]]
-    slope = (u_b - u_a) / (t_b - t_a)
-    return u_a + slope * (t - t_a), slope
+class _Course:
+    """A voltage profile, its instants from the start of the record."""
+
+    def __init__(self, start_s: float, place: int, event: VoltageProfile) -> None:
+        self.place = place
+        self.times = [start_s + at for at, _ in event.points]
+        self.levels = [level for _, level in event.points]
+
+    def begins(self) -> float:
+        """When its first point is (s)."""
+        return self.times[0]
+
+    def place_of(self) -> int:
+        """Its place among the profiles."""
+        return self.place
+
+    def at(self, t: float) -> tuple[float, float]:
+        """Level and slope right after an instant between its first and its last point."""
+        k = bisect_right(self.times, t)
+        t_a, t_b = self.times[k - 1], self.times[k]
+        u_a, u_b = self.levels[k - 1], self.levels[k]
+        slope = (u_b - u_a) / (t_b - t_a)
+        return u_a + slope * (t - t_a), slope
 
 
-def _voltages(scenario: Scenario, t: float, last: bool) -> tuple[Sequences, Sequences]:
-    sagged = _sagged(scenario, t)
-    factor, slope = _profile(scenario, t)
-    slope = 0.0 if last else slope  # nothing moves after the last breakpoint, whatever rounding says
-    return Sequences(*(factor * part for part in sagged)), Sequences(*(slope * part for part in sagged))
+def _voltages(scenario: Scenario, times: Sequence[float]) -> Iterator[tuple[Sequences, Sequences]]:
+    for t, sagged, (factor, slope) in zip(times, _sagged(scenario, times), _profiles(scenario, times), strict=True):
+        moving = 0.0 if t == times[-1] else slope  # nothing moves after the last breakpoint, whatever rounding says
+        yield Sequences(*(factor * part for part in sagged)), Sequences(*(moving * part for part in sagged))
 
 
-def _grid(scenario: Scenario, t: float) -> tuple[float | None, float]:
-    """Short-circuit ratio and X/R from an instant on."""
+def _grids(scenario: Scenario, times: Sequence[float]) -> Iterator[tuple[float | None, float]]:
+    """Short-circuit ratio and X/R from each instant on."""
+    ahead = deque(sorted((e for e in scenario.events if isinstance(e, GridStrength)), key=lambda e: e.t_s))
     scr, xr = scenario.scr, scenario.xr
-    for event in sorted((e for e in scenario.events if isinstance(e, GridStrength)), key=lambda e: e.t_s):
-        if scenario.start_s + event.t_s <= t:
+    for t in times:
+        while ahead and scenario.start_s + ahead[0].t_s <= t:
+            event = ahead.popleft()
             scr, xr = event.scr, event.xr
-    return scr, xr
+        yield scr, xr

@@ -10,6 +10,7 @@ from pvlvrt_compliance.data.reader import Kind, Source
 from pvlvrt_compliance.data.repository import begins_repository
 from pvlvrt_compliance.data.syntax import Table
 from pvlvrt_compliance.errors import UsageError, listed
+from pvlvrt_compliance.ordinary_file import NotOrdinaryError, content_of
 from pvlvrt_compliance.settings import FILE, PROJECT_FILE
 from pvlvrt_compliance.trust import distrust
 
@@ -112,11 +113,14 @@ def read_file(path: Path) -> Taken | None:
     return None if table is None else Taken(source, TABLE, path.parent)
 
 
+_LARGEST_BYTES = 64 << 20  # of a project's file that says nothing of us (chosen): more than anybody writes
+
+
 def _speaks_of_us(path: Path) -> bool:
     """Whether it can have the table; what else is wrong with a project's file is not for us to say."""
     try:
-        return TABLE[1].encode() in path.read_bytes()
-    except OSError:
+        return TABLE[1].encode() in content_of(path, _LARGEST_BYTES)
+    except NotOrdinaryError:
         return True  # whoever reads it says why it cannot be read
 
 

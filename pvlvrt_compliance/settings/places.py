@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from pvlvrt_compliance.controllers.bundled import BUNDLED
+from pvlvrt_compliance.controllers.spelling import names_module
 from pvlvrt_compliance.data.search_path import is_path
 from pvlvrt_compliance.settings.setting import Setting
 
@@ -48,7 +49,9 @@ def _controller(spec: str, folder: Path) -> str:
         return spec
     if _COMMAND.match(spec):
         return _WORDS.sub(lambda word: _word(word[0], folder), spec.removeprefix("stdio:")).join(("stdio:", ""))
-    return spec if _SCHEME.match(spec) else _from_here(spec, folder)  # the class of FILE.py:CLASS stays behind its file
+    if _SCHEME.match(spec) or names_module(spec):
+        return spec
+    return _from_here(spec, folder)  # the class of FILE.py:CLASS stays behind its file
 
 
 def _word(word: str, folder: Path) -> str:

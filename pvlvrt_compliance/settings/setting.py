@@ -6,6 +6,8 @@ import shlex
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
+from pvlvrt_compliance.texts import shortened
+
 PREFIX = "PVLVRT_"
 """How the names of variables begin that are settings."""
 
@@ -165,8 +167,7 @@ def _words(text: str) -> list[str]:
 
 
 def _shown(raw: Any) -> str:
-    text = json.dumps(raw, default=str, ensure_ascii=False)
-    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
+    return shortened(json.dumps(raw, default=str, ensure_ascii=False), _LONGEST)
 
 
 _LONGEST = 60

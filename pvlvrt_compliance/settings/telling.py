@@ -28,5 +28,8 @@ def told(holds: Effective) -> dict[str, Any]:
 
 def _each(value: Value) -> dict[str, Any]:
     """Where the items of a list come from, where they do not all stand in one line."""
-    origins = [value.of_item(item).rpartition(" ")[0] for item in value.lines if item in value.value]
+    if not value.lines:
+        return {}
+    kept = set(value.value)  # a file may have as many items as fit into it
+    origins = [line.rpartition(" ")[0] for item, line in value.lines.items() if item in kept]
     return {"each_from": origins} if set(origins) - {value.origin} else {}

@@ -20,6 +20,7 @@ from pvlvrt_compliance.simulation.door.controller import (
     synchronised_controller,
     untripped,
 )
+from pvlvrt_compliance.simulation.door.switches import all_off, switched_by, switches_of
 from pvlvrt_compliance.simulation.door.table import DoorTable
 from pvlvrt_compliance.simulation.outcome import COMPLETED, NOT_FINITE, Outcome
 from pvlvrt_compliance.simulation.recorder import RecordingPlan, next_row
@@ -83,7 +84,7 @@ def run(  # noqa: PLR0912 - one for all that may be none; those cost nothing, an
         status, period = synchronised_controller(plant, m, first, plant_params, tables, door)
         if status != COMPLETED:
             return Outcome(status=status, period=period, plant=plant)
-    relay, signals, sampling = plant.relay, commanding(m), True
+    relay, signals, switches, sampling = plant.relay, commanding(m), all_off(), True
     k_grid, k = 0, 0
     row, stretch, due = 0, 0, plan.first[0]
     for n in range(first, plan.first[-1]):
@@ -92,6 +93,8 @@ def run(  # noqa: PLR0912 - one for all that may be none; those cost nothing, an
         k_grid = source.k
         if door is not None:
             sampling = (n - first) % door.timing.ratio == 0
+            if sampling:
+                plant = switched_by(plant, switches, door)
         if sampling:
             m = acting_as_sampled(signals.m, k, hardware)
         now = as_at(t, k_grid, plant_params, tables)
@@ -101,10 +104,11 @@ def run(  # noqa: PLR0912 - one for all that may be none; those cost nothing, an
             if controller_params is not None:
                 controller, signals = controlled(controller, sample.seen, controller_params)
             if door is not None:
-                put_sample(door.signals, sample, plant, door.timing)
+                put_sample(door, sample, plant)
                 status = call_or_ignore(door, t, plant.trip != NO_TRIP)
                 if status == COMPLETED:
                     signals = commanding(commanded(door, sample.seen.v_dc))
+                    switches = switches_of(door)
                 elif status != IGNORED:
                     return Outcome(status=status, period=n, plant=plant)
         if not is_finite(plant, signals):

@@ -6,18 +6,32 @@ profiles and the judging of records never pay for the compiler.
 
 import json
 import math
+import re
 from collections.abc import Iterable, Sequence
-from typing import Annotated, Any, Literal, get_origin
+from typing import Annotated, Any, Literal, Self, get_origin
 
-from pydantic import Field, FiniteFloat, ValidationError
+from pydantic import Field, FiniteFloat, model_validator
+from pydantic.fields import FieldInfo
 
 from pvlvrt_compliance.control.parameters import ControllerParameters
+from pvlvrt_compliance.data.models import validated
+from pvlvrt_compliance.data.positions import Location
+from pvlvrt_compliance.data.problems import dotted
 from pvlvrt_compliance.errors import UsageError, did_you_mean, near_misses
 from pvlvrt_compliance.hardware.parameters import SensorParameters
-from pvlvrt_compliance.parameter_group import ParameterGroup, Positive
+from pvlvrt_compliance.parameter_group import ParameterGroup, ranges_of
 from pvlvrt_compliance.plant.parameters import PlantParameters, ProtectionParameters
 
 Fidelity = Literal["averaged", "switched"]
+
+LONGEST = 2000
+"""Characters of a value: chosen, for the longest list of points that anybody types."""
+
+SHORTEST_PERIOD_S, LONGEST_PERIOD_S = 1e-6, 0.1
+"""Range of the control period, and of a controller's sample time: chosen."""
+
+_BEYOND = re.compile(r"must be (?:greater|less) than(?: or equal to)? \S+, not (.+)")
+"""How a number out of its range is told of one side alone."""
 
 
 class SimulationParameters(ParameterGroup):
@@ -26,7 +40,7 @@ class SimulationParameters(ParameterGroup):
     fidelity: Fidelity = Field(
         default="averaged", description="the mean over a carrier period, or every leg as it switches"
     )
-    plant_step_us: Positive = 5.1196
+    plant_step_us: FiniteFloat = Field(default=5.1196, ge=0.05, le=1000)
     control_ratio: int = Field(default=8, ge=1, le=1000, description="plant steps in a control period")
     settling_s: Annotated[FiniteFloat, Field(ge=0, le=60)] = Field(
         default=0.5, description="before a record, not judged; with a controller of the user's own 1 s unless set"
@@ -39,10 +53,45 @@ class SimulationParameters(ParameterGroup):
         default=0.2,
         description="before settling: a controller of the user's own sees the steady state, and does not act yet",
     )
-    time_limit_s: Positive | None = Field(
+    time_limit_s: FiniteFloat | None = Field(
+        ge=0.001,
+        le=1e6,
         default=None,
         description="of computing, for one run of a user's own controller; none: 60 s and 20 times the run's length",
     )
+    opening_limit_s: FiniteFloat = Field(
+        default=60.0, ge=0.001, le=1e6, description="of computing, to open a user's own controller"
+    )
+    memory_limit_mb: FiniteFloat = Field(
+        default=2000.0,
+        ge=1,
+        le=1e6,
+        description="of memory, for a user's own controller and all that it starts, the run's record too",
+    )
+    output_limit_mb: FiniteFloat = Field(
+        default=64.0, ge=0.001, le=1e5, description="that a user's own controller may print in a run"
+    )
+    files_limit_mb: FiniteFloat = Field(
+        default=1000.0,
+        ge=0.001,
+        le=1e6,
+        description="of files in the temporary folder of a run, and that an FMU unpacks to",
+    )
+    files_limit: int = Field(default=10_000, ge=1, le=10_000_000, description="files in the same places")
+    processes_limit: int = Field(
+        default=100,
+        ge=1,
+        le=100_000,
+        description="processes at once that a user's own controller may have, its own one counted",
+    )
+
+    @model_validator(mode="after")
+    def _period_in_range(self) -> Self:
+        period_s = 1e-6 * self.plant_step_us * self.control_ratio
+        if not SHORTEST_PERIOD_S <= period_s <= LONGEST_PERIOD_S:
+            said = f"the control period is {period_s:g} s, plant_step_us times control_ratio"
+            raise ValueError(f"{said}; {SHORTEST_PERIOD_S:g} s to {LONGEST_PERIOD_S:g} s is allowed")
+        return self
 
 
 class Parameters(ParameterGroup):
@@ -75,8 +124,7 @@ def parameters_from(assignments: Iterable[str]) -> Parameters:
     known = parameter_names()
     groups: dict[str, dict[str, Any]] = {}
     for assignment in assignments:
-        name, equals, text = assignment.partition("=")
-        name = name.strip()
+        name, equals, text = _parted(assignment)
         if not equals:
             raise UsageError(f"--set {assignment}: write --set group.name=value")
         if name not in known:
@@ -85,11 +133,22 @@ def parameters_from(assignments: Iterable[str]) -> Parameters:
         if key in groups.setdefault(group, {}):
             raise UsageError(f"--set {name}: given twice")
         groups[group][key] = _value(name, text)
-    try:
-        # As JSON and strict: a list is a tuple there, but neither true nor "1.2" is a number.
-        return Parameters.model_validate_json(json.dumps(groups), strict=True)
-    except ValidationError as error:
-        raise UsageError("; ".join(_problem(e["loc"], e["msg"]) for e in error.errors())) from None
+    found, problems = validated(Parameters, groups)
+    if found is None:
+        raise UsageError(
+            "; ".join(f"--set {dotted(location)}: {_in_range(location, text)}" for location, text in problems)
+        )
+    return found
+
+
+def _parted(assignment: str) -> tuple[str, str, str]:
+    """Name, equals sign and value; what is longer than any of ours is refused before it is looked at."""
+    name, equals, text = assignment.partition("=")
+    name = name.strip()
+    for what, part in (("name", name), ("value", text)):
+        if len(part) > LONGEST:
+            raise UsageError(f"--set {name:.40}: a {what} of {len(part)} characters; {LONGEST} are allowed")
+    return name, equals, text
 
 
 def _meant(name: str, known: Sequence[str]) -> str:
@@ -107,7 +166,7 @@ def _meant(name: str, known: Sequence[str]) -> str:
     return f'; there is no group "{group}"; did you mean "{nearest}"?'
 
 
-OF_THE_HOST = frozenset({"computation_delay_samples"})
+OF_THE_HOST = frozenset({"computation_delay_samples", "hold"})
 """Names in the group ``controller`` that say how any controller is run, also one of the user's own."""
 
 
@@ -127,8 +186,8 @@ def own_parameters(assignments: Iterable[str]) -> tuple[dict[str, float | int | 
     own: dict[str, float | int | bool | str] = {}
     others = []
     for assignment in assignments:
-        name, equals, text = assignment.partition("=")
-        group, _, key = name.strip().partition(".")
+        name, equals, text = _parted(assignment)
+        group, _, key = name.partition(".")
         if not equals or group != "controller" or key in OF_THE_HOST:
             others.append(assignment)
             continue
@@ -150,10 +209,15 @@ def _plain_value(name: str, text: str) -> float | int | bool | str:
     return value
 
 
-def _takes_words(name: str) -> bool:
+def _field(name: str) -> FieldInfo:
     group, _, key = name.partition(".")
     annotation: Any = Parameters.model_fields[group].annotation
-    return get_origin(annotation.model_fields[key].annotation) is Literal
+    found: FieldInfo = annotation.model_fields[key]
+    return found
+
+
+def _takes_words(name: str) -> bool:
+    return get_origin(_field(name).annotation) is Literal
 
 
 def _value(name: str, text: str) -> Any:
@@ -169,5 +233,11 @@ def _refuse(constant: str) -> None:
     raise ValueError(f"{constant} is not a number that can be used")
 
 
-def _problem(location: tuple[int | str, ...], message: str) -> str:
-    return f"--set {'.'.join(str(part) for part in location)}: {message.removeprefix('Value error, ')}"
+def _in_range(location: Location, text: str) -> str:
+    """A problem with the whole range of its parameter, where it is out of that."""
+    beyond = _BEYOND.fullmatch(text)
+    if beyond is None or len(location) < 2:
+        return text
+    ranges = ranges_of(_field(".".join(map(str, location[:2]))))
+    low, high = ranges[location[-1] if len(ranges) > 1 and isinstance(location[-1], int) else 0]
+    return f"{beyond[1]} is out of range; {low:g} to {high:g} is allowed"

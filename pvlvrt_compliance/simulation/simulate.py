@@ -18,7 +18,8 @@ from pvlvrt_compliance.simulation.electronics import hardware_of
 from pvlvrt_compliance.simulation.loop import run
 from pvlvrt_compliance.simulation.outcome import COMPLETED, tripped_at_s
 from pvlvrt_compliance.simulation.parameters import Parameters
-from pvlvrt_compliance.simulation.recorder import Busy, RecordingPlan, every_period, plan_of, with_settling
+from pvlvrt_compliance.simulation.recorder import RecordingPlan, every_period, plan_of, with_settling
+from pvlvrt_compliance.simulation.thinning import Busy, too_much
 from pvlvrt_compliance.simulation.translate import (
     control_period_s,
     controller_params,
@@ -80,16 +81,28 @@ def recorded(
 
     ``make`` runs the scenario by a plan; it is called again where the inverter has tripped while the record was thin.
     So many periods of ``settling`` are recorded before it.
+
+    Raises
+    ------
+    SimulationError
+        When the record takes more memory than one may.
     """
     periods = math.floor(scenario.end_s / T_reg) + 1
     busy = [*busy_stretches(scenario), *_played(playback)]
     plan = plan_of(busy, periods, T_reg) if thin else every_period(periods)
-    waveforms = make(with_settling(plan, settling, T_reg))
+    waveforms = make(_affordable(with_settling(plan, settling, T_reg)))
     opened_s = _opened_while_thin_s(waveforms)
     if opened_s is None:
         return waveforms
     del waveforms  # the second record takes its place
-    return make(with_settling(plan_of([*busy, (opened_s, opened_s)], periods, T_reg), settling, T_reg))
+    return make(_affordable(with_settling(plan_of([*busy, (opened_s, opened_s)], periods, T_reg), settling, T_reg)))
+
+
+def _affordable(plan: RecordingPlan) -> RecordingPlan:
+    """A plan whose record fits into the memory that one may take; what a recording adds is not known before a run."""
+    if (said := too_much(sum(plan.rows))) is not None:
+        raise SimulationError(said)
+    return plan
 
 
 def _played(playback: PlaybackTable | None) -> list[Busy]:
@@ -114,7 +127,7 @@ def _run(  # type: ignore[no-untyped-def]
     controller = controller_params(parameters, scenario)
     T_reg = control_period_s(parameters)
     settling = math.ceil(parameters.simulation.settling_s / T_reg)
-    samples = np.empty((sum(plan.rows), len(CHANNELS)))
+    samples = np.empty((len(CHANNELS), sum(plan.rows))).T  # a channel lies in one piece, as a record has it
     start = steady_state(plant, tables.grid, controller, scenario, -settling * T_reg)
     hardware = hardware_of(parameters, start, settling + int(plan.first[-1]))
     state = start.controller
@@ -146,7 +159,12 @@ def record_of(
 
 
 def _columns(samples: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Rows turned into columns, some at a time: so many stay in the fast memory while they are turned."""
+    """Rows turned into columns, some at a time: so many stay in the fast memory while they are turned.
+
+    What already has its columns in one piece each stays where it is.
+    """
+    if samples.strides[0] == samples.itemsize:
+        return samples.T
     columns = np.empty(samples.shape[::-1])
     for first in range(0, len(samples), _ROWS_AT_ONCE):
         columns[:, first : first + _ROWS_AT_ONCE] = samples[first : first + _ROWS_AT_ONCE].T

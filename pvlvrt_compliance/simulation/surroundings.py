@@ -6,7 +6,6 @@ Belongs to `translate.py`, the one place where words with units become symbols.
 import cmath
 import math
 from collections.abc import Iterable
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +22,7 @@ from pvlvrt_compliance.scenario.timeline import LONG_AGO_S, entries, irradiance_
 from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.space_vectors import clarke
 from pvlvrt_compliance.units import Nominal
-from pvlvrt_compliance.waveforms.recording import read_recording
+from pvlvrt_compliance.waveforms.playback import read_voltages
 
 _SQRT3_2 = math.sqrt(1.5)  # length of a power-invariant space vector per unit of phase amplitude
 
@@ -89,8 +88,12 @@ def playback_table(scenario: Scenario) -> PlaybackTable | None:
     if len(found) > 1:
         raise UsageError("events: one recording at most")
     event = found[0]
-    samples = read_recording(Path(event.file), event.channels)
-    a, b, c = (event.scale * samples[name] for name in event.channels)
+    file, within = event.located()
+    try:
+        samples = read_voltages(file, event.channels, event.given_scale, scenario.nominal_frequency_hz, within)
+    except UsageError as error:
+        raise UsageError(event.as_named(str(error))) from None
+    a, b, c = (samples[name] for name in event.channels)
     t = scenario.start_s + event.t_s
     return PlaybackTable(t=t, dt=samples.dt_s, u=np.ascontiguousarray(clarke(a, b, c)), u_zero=(a + b + c) / 3)
 

@@ -18,6 +18,7 @@ from pvlvrt_compliance.control.mppt import MpptParams
 from pvlvrt_compliance.control.parameters import ControllerParameters, PowerStrategy, SynchronisationName
 from pvlvrt_compliance.control.srf_pll import SrfPllParams
 from pvlvrt_compliance.control.synchronisation import SynchronisationParams
+from pvlvrt_compliance.errors import SimulationError
 from pvlvrt_compliance.kernel import plain
 from pvlvrt_compliance.plant import pv_array
 from pvlvrt_compliance.plant.grid import GridTable
@@ -106,8 +107,8 @@ def protection_params(parameters: Parameters, nominal: Nominal) -> ProtectionPar
         u_low=p.undervoltage_curve[-1][1],
         curve_delay=p.undervoltage_delay_s,
         w_nom=w_nom,
-        w_min=2 * math.pi * low,
-        w_max=2 * math.pi * high,
+        w_min=-math.inf if p.frequency_relay is False else 2 * math.pi * low,
+        w_max=math.inf if p.frequency_relay is False else 2 * math.pi * high,
         t_frequency=p.frequency_delay_s,
         turn=plain(rotation)(w_nom * plant_step_s(parameters)),
     )
@@ -145,7 +146,10 @@ def plant_tables(parameters: Parameters, scenario: Scenario) -> PlantTables:
     """What the plant looks up: the events of grid and weather, and the undervoltage curve."""
     nominal = nominal_of(parameters, scenario)
     T_S = plant_step_s(parameters)
-    curve = np.array(parameters.protection.undervoltage_curve, dtype=np.float64)
+    protection = parameters.protection
+    curve = np.array(protection.undervoltage_curve, dtype=np.float64)
+    if protection.undervoltage_relay is False:
+        curve[:, 1] = 0.0  # no voltage is below it; what the last level is besides, in `protection_params`, stays
     return PlantTables(
         grid=grid_table(scenario, nominal, T_S),
         harmonics=harmonic_table(scenario, nominal),
@@ -219,7 +223,21 @@ def steady_state(
 
     The regulators' resonators start where the inverter balances the grid voltage; what is left of the transient
     (losses, resonant error) settles before the record begins.
+
+    Raises
+    ------
+    SimulationError
+        When there is none in finite numbers: a voltage of the DC link that the array never has.
     """
+    try:
+        return _steady_state(plant, grid, controller, scenario, t)
+    except ArithmeticError:
+        raise SimulationError("there is no steady state in finite numbers to begin from") from None
+
+
+def _steady_state(
+    plant: PlantParams, grid: GridTable, controller: ControllerParams, scenario: Scenario, t: float
+) -> Start:
     best = pv_array.maximum_power_point(scenario.irradiance_w_m2, plant.pv)
     P = min(best.p, controller.lvrt.S_nom)
     v_dc = max(pv_array.voltage_at_power(P, scenario.irradiance_w_m2, plant.pv), controller.mppt.v_min)
@@ -243,6 +261,7 @@ def steady_state(
             trip=NO_TRIP,
             t_trip=0.0,
             closed=True,
+            blocked=False,
             mean=PeriodMean(u=K_PWM * v_dc * m, i=i),
         ),
         controller=ControllerState(

@@ -80,7 +80,11 @@ def parameters_of(asked: "Asked", spell: Spell) -> tuple[Parameters, dict[str, f
         own, others = own_parameters(asked.settings) if asked.controller is not None else ({}, tuple(asked.settings))
         if asked.fidelity is not None:
             others = (*others, f"simulation.fidelity={asked.fidelity}")
-        return parameters_from(others), own
+        parameters = parameters_from(others)
+        if asked.controller is not None:
+            alone = parameters.protection.of_a_plant_alone()
+            parameters = parameters.model_copy(update={"protection": alone})
+        return parameters, own
     except UsageError as error:
         text = str(error)
         if asked.fidelity is not None:

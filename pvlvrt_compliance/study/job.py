@@ -14,11 +14,14 @@ from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.results.baseline import TOLERANCE
 from pvlvrt_compliance.scenario.events import Event
 from pvlvrt_compliance.simulation.parameters import Parameters
-from pvlvrt_compliance.study import from_asked
+from pvlvrt_compliance.study import at_once, from_asked
 from pvlvrt_compliance.study.baseline.applying import Held
 from pvlvrt_compliance.study.baseline.reading import read_baseline
 from pvlvrt_compliance.study.choosing import choose
+from pvlvrt_compliance.study.cost import refuse_costly
 from pvlvrt_compliance.study.from_asked import named_by_file, parameters_of, profiles_of, spelled_field, tests_of
+from pvlvrt_compliance.study.idle import idle
+from pvlvrt_compliance.study.played import with_recordings
 from pvlvrt_compliance.study.reuse.opening import limit_of
 from pvlvrt_compliance.study.selection import Assignment
 from pvlvrt_compliance.study.shards.shard import Shard, shard_of
@@ -26,15 +29,10 @@ from pvlvrt_compliance.units import parse_fraction
 
 ALL = from_asked.ALL
 Spell = from_asked.Spell
+AUTO, LOCAL = at_once.AUTO, at_once.LOCAL
 
 KEEP_ALL, KEEP_FAILED = "all", "failed"
 WAVEFORMS_KEPT = (KEEP_ALL, KEEP_FAILED, "none")
-
-AUTO = "auto"
-"""As many tests at once as there are cores."""
-
-LOCAL = "local"
-"""In place of a scheduler's address: one of this machine, for as long as the run lasts."""
 
 HOW = ("jobs", "cluster")
 """Fields of `Asked` that say how tests are run: what is found is the same."""
@@ -72,8 +70,8 @@ class Asked:
         in s, degrees, W/m2.
     frequency, temperature, scr, xr, transformer : optional
         Of every test: ``50Hz`` or Hz, ``45C`` or degrees C, a ratio, a ratio, a vector group.
-    events : str or sequence, optional
-        What happens besides: a file, or the events.
+    events, recordings : optional
+        What happens besides, a file or the events; a folder that recordings may lie in besides that of such a file.
     settings : sequence of str
         Parameters, ``controller.pr_integral_gain=0.2``.
     fidelity : str, optional
@@ -84,10 +82,8 @@ class Asked:
         Names of the checks that are judged; without, all.
     last_failed, failed_first : bool
         Whether only tests are run that were not passed the last time, or whether these are run first.
-    fail_fast : bool
-        Whether the run ends at the first test that is not passed.
-    include_long : bool
-        Whether tests of half an hour are run.
+    fail_fast, include_long : bool
+        Whether the run ends at the first test that is not passed, and whether tests of half an hour are run.
     waveforms : str
         Which are kept, of `WAVEFORMS_KEPT`.
     baseline : str, optional
@@ -122,6 +118,7 @@ class Asked:
     xr: str | float | None = None
     transformer: str | None = None
     events: str | Sequence[Event] | None = None
+    recordings: str | None = None
     settings: Sequence[str] = ()
     fidelity: str | None = None
     tests: Sequence[str] = ()
@@ -169,7 +166,7 @@ class Job:
     made_ns: int = field(default_factory=time.time_ns)  # when this was made: records that were used since then stay
 
 
-def make_job(asked: Asked, spell: Spell = str, *, last_run: str | None = None) -> Job:
+def make_job(asked: Asked, spell: Spell = str, *, last_run: str | None = None, is_simulated: bool = True) -> Job:
     """Check everything that can be checked before the first simulation.
 
     Parameters
@@ -180,6 +177,8 @@ def make_job(asked: Asked, spell: Spell = str, *, last_run: str | None = None) -
         How a message names a field of it.
     last_run : str, optional
         Folder of the files of the last run, which says what was not passed then.
+    is_simulated : bool
+        Whether anything will be: recordings that are played back are read then.
 
     Raises
     ------
@@ -200,10 +199,11 @@ def make_job(asked: Asked, spell: Spell = str, *, last_run: str | None = None) -
     if not choice.tests:
         names = ", ".join(profile.id for profile in profiles)
         raise UsageError(f"{names}: the profile has no tests of its own; give one, for instance {spell('sag')} 90%")
+    refuse_costly(choice.tests, parameters)
     shard, tests, elsewhere = _part(asked, choice.tests, spell)
     return Job(
         profiles=profiles,
-        tests=tests,
+        tests=with_recordings(tests, asked.recordings, spell, are_read=is_simulated),
         left_out=choice.left_out,
         not_selected=(*choice.not_selected, *elsewhere),
         shard=shard,
@@ -211,7 +211,7 @@ def make_job(asked: Asked, spell: Spell = str, *, last_run: str | None = None) -
         first=choice.first,
         checks=asked.checks,
         fail_fast=asked.fail_fast,
-        notes=choice.notes,
+        notes=(*choice.notes, *idle(asked, parameters, choice.tests, spell)),
         parameters=parameters,
         controller=asked.controller,
         given=given,
@@ -219,10 +219,10 @@ def make_job(asked: Asked, spell: Spell = str, *, last_run: str | None = None) -
         waveforms=asked.waveforms,
         profile_files=named_by_file(asked.profiles, profiles),
         baseline=_baseline(asked, spell),
-        jobs=_jobs(asked.jobs, spell),
+        jobs=at_once.jobs_of(asked, spell),
         reuse=asked.reuse,
         reuse_bytes=limit_of(asked, spell),
-        cluster=_cluster(asked, spell),
+        cluster=at_once.cluster_of(asked, spell),
     )
 
 
@@ -268,29 +268,6 @@ def _part(
     chosen = tests_in(shard, tests, spell("shard"))
     keys = {item.key for item in chosen}
     return shard, chosen, tuple(item for item in tests if item.key not in keys)
-
-
-def _jobs(given: str | int | None, spell: Spell) -> str | int | None:
-    if given is None or given == AUTO:
-        return given
-    try:
-        count = int(given)
-    except ValueError:
-        count = 0
-    if count < 1:
-        raise UsageError(f"{spell('jobs')} {given}: give how many tests are run at once, 1 or more, or {AUTO}")
-    return count
-
-
-def _cluster(asked: Asked, spell: Spell) -> str | None:
-    if asked.cluster not in (None, LOCAL) and asked.jobs not in (None, AUTO):
-        own = f"goes with {spell('cluster')} {LOCAL} only: a scheduler has the workers that it has"
-        raise UsageError(f"{spell('jobs')} {own}")
-    if asked.cluster not in (None, LOCAL) and asked.reuse is not None:
-        raise UsageError(f"{spell('reuse')}: the folder is of this machine; it does not go with {spell('cluster')}")
-    if asked.cluster is not None and not asked.cluster.strip():
-        raise UsageError(f"{spell('cluster')}: give the address of a scheduler (tcp://HOST:8786), or {LOCAL}")
-    return asked.cluster
 
 
 def _is_given(value: object) -> bool:

@@ -34,9 +34,9 @@ def _opened(given: str | Factory, job: Job) -> "ForeignSimulator":
     from pvlvrt_compliance.controllers.simulator import ForeignSimulator
 
     if isinstance(given, str):
-        return ForeignSimulator(given, job.given, job.mapping)
+        return ForeignSimulator(given, job.given, job.mapping, parameters=job.parameters)
     from pvlvrt_compliance.controllers.here import SimulatorHere, spec_of
 
     if spec := spec_of(given):
-        return ForeignSimulator(spec, job.given)
+        return ForeignSimulator(spec, job.given, parameters=job.parameters)
     return SimulatorHere(given, job.given)

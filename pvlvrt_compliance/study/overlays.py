@@ -18,6 +18,7 @@ from pvlvrt_compliance.results.changes import Change, Key
 from pvlvrt_compliance.results.comparison import Changed, Comparison
 from pvlvrt_compliance.study.comparing import Side
 from pvlvrt_compliance.units import Nominal
+from pvlvrt_compliance.waveforms import Waveforms
 from pvlvrt_compliance.waveforms.recording import read_waveforms
 
 MOST = 6
@@ -139,7 +140,8 @@ class _Records:
         if result.disturbance is None or result.rating is None:
             raise _NotThere(f"{self._side.name} was written by a version that does not say what the grid did")
         file = self._file(result.waveforms)
-        return Seen(_evidence(file, result, result.disturbance, result.rating), result)
+        waveforms = read_waveforms(file, within=self._side.folder)
+        return Seen(_evidence(waveforms, result, result.disturbance, result.rating), result)
 
     def _file(self, name: str) -> Path:
         """The file of a record; nothing is opened outside of the folder that the results lie in."""
@@ -152,11 +154,11 @@ class _Records:
         return self._side.folder / name
 
 
-def _evidence(file: Path, result: TestResult, disturbance: Disturbance, rating: Rating) -> Evidence:
+def _evidence(waveforms: Waveforms, result: TestResult, disturbance: Disturbance, rating: Rating) -> Evidence:
     nominal = Nominal(
         apparent_power_va=1e3 * rating.apparent_power_kva,
         phase_voltage_v=rating.phase_voltage_v,
         frequency_hz=rating.frequency_hz,
     )
     available_w = 1e3 * (result.available_power_kw or 0.0)
-    return collect_without_profile(read_waveforms(file), nominal, disturbance, available_w, result.measurements)
+    return collect_without_profile(waveforms, nominal, disturbance, available_w, result.measurements)

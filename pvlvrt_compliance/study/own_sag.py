@@ -3,8 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, get_args
 
-from pydantic import ValidationError
-
+from pvlvrt_compliance.data.models import made
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.scenario.sag import PAIRS, Sag, Type, near_phases
@@ -80,7 +79,4 @@ def _sag(asked: "Asked", depth: str | float, spell: Callable[[str], str]) -> Sag
         "two_phase": two_phase,
         "type": asked.sag_type,
     }
-    try:
-        return Sag.model_validate(fields)
-    except ValidationError as error:  # pragma: no cover - every field has been checked above
-        raise UsageError(str(error)) from None
+    return made(Sag, fields)

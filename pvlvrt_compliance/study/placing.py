@@ -91,7 +91,7 @@ def begun_in(staging: Path) -> Placing | None:
     try:
         found = json.loads((staging / _JOURNAL).read_bytes())
         into, withdrawn, placed = (found[key] for key in ("into", "withdrawn", "placed"))
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, RecursionError, KeyError, TypeError):
         return None
     if not (isinstance(into, str) and _are_names(withdrawn) and _are_names(placed) and _is_inside(into)):
         return None

@@ -12,7 +12,7 @@ from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.study.timing import FIXED_TIME
-from pvlvrt_compliance.texts import all_printable, shell_word
+from pvlvrt_compliance.texts import shell_word
 
 _LIBRARIES = ("numpy", "scipy", "numba", "pydantic", "plotly")
 
@@ -56,12 +56,12 @@ def provenance(
         "command": command if isinstance(command, str) else " ".join(map(shell_word, command)),
         "profile": ", ".join(profile.id for profile in profiles),
         "profile_digest": ", ".join(profile.digest for profile in profiles),
-        **(all_printable(controller) if controller else _bundled()),
-        **({"files": all_printable(files)} if files else {}),
+        **(controller or _bundled()),
+        **({"files": files} if files else {}),
         "versions": versions(),
         "parameters": parameters.model_dump(mode="json"),
-        **({"settings": all_printable(settings)} if settings else {}),
-        **({"reuse": all_printable(reuse)} if reuse else {}),
+        **({"settings": settings} if settings else {}),
+        **({"reuse": reuse} if reuse else {}),
     }
 
 
@@ -71,7 +71,7 @@ def provenance_of_record(profile: Profile, record: Mapping[str, Any], created: d
         "created": created.isoformat(),
         "profile": profile.id,
         "profile_digest": profile.digest,
-        **all_printable(record),
+        **record,
         "versions": versions(),
     }
 

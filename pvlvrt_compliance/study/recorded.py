@@ -10,6 +10,7 @@ from pvlvrt_compliance.disturbance.found import Thresholds, disturbance_found
 from pvlvrt_compliance.disturbance.model import Disturbance
 from pvlvrt_compliance.errors import UsageError, did_you_mean
 from pvlvrt_compliance.evidence.collect import normal_voltage
+from pvlvrt_compliance.ordinary_file import content_of
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.results import Results, conclude
@@ -19,7 +20,7 @@ from pvlvrt_compliance.study.provenance import created_at, provenance_of_record
 from pvlvrt_compliance.study.timing import Stopwatch
 from pvlvrt_compliance.units import Nominal, nearest_nominal_frequency
 from pvlvrt_compliance.waveforms import Waveforms
-from pvlvrt_compliance.waveforms.recording import files_of, read_waveforms
+from pvlvrt_compliance.waveforms.recording import LARGEST_RECORD_BYTES, files_of, read_waveforms
 
 _NO_FILE = "record"
 
@@ -106,5 +107,5 @@ def _origin(record: str | Waveforms) -> dict[str, Any]:
             for samples in segment.channels.values():
                 digest.update(samples.tobytes())
         return {"record": _NO_FILE, "record_digest": digest.hexdigest()}
-    content = b"".join(file.read_bytes() for file in files_of(Path(record)))
+    content = b"".join(content_of(file, LARGEST_RECORD_BYTES) for file in files_of(Path(record)))
     return {"record": record, "record_digest": hashlib.sha256(content).hexdigest()}

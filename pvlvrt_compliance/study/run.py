@@ -4,7 +4,10 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from pvlvrt_compliance.checks.evaluate import errored, evidence_of, judge_record
+from pvlvrt_compliance.disturbance.found import Thresholds
+from pvlvrt_compliance.disturbance.played import disturbance_played
 from pvlvrt_compliance.errors import PvlvrtError
+from pvlvrt_compliance.evidence.collect import normal_voltage
 from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
@@ -40,5 +43,7 @@ def run_test(profile: Profile, test: TestCase, parameters: Parameters, simulator
     except (PvlvrtError, ArithmeticError) as error:
         return Judged(errored(profile, test, str(error)), None)
     nominal = nominal_of(parameters, test.scenario)
-    evidence = evidence_of(profile, test, waveforms, nominal, available_w, instruments=instruments_for(test))
+    thresholds = Thresholds(normal_voltage(profile.thresholds))
+    played = disturbance_played(test.scenario, waveforms, nominal, thresholds)
+    evidence = evidence_of(profile, test, waveforms, nominal, available_w, played, instruments_for(test))
     return Judged(judge_record(profile, test, evidence), waveforms, evidence)

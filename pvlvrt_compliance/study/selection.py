@@ -1,5 +1,6 @@
 """Which tests of the profiles are run, and which checks judge them."""
 
+import re
 from collections.abc import Callable, Collection, Sequence
 from fnmatch import fnmatchcase
 from typing import NamedTuple
@@ -15,6 +16,9 @@ Spell = Callable[[str], str]
 
 FURTHER = "-further-"
 """Stands between the id of a row and the number of a further run of it."""
+
+_WILD = re.compile(r"[*?\[]")
+"""What makes a pattern more than a name."""
 
 
 class Assignment(NamedTuple):
@@ -134,8 +138,9 @@ def _judges(item: Assignment, kind: str) -> bool:
 
 
 def _refuse_idle(found: Sequence[Assignment], patterns: Sequence[str], field: str, spell: Spell) -> None:
+    named = _by_profile(found)
     for pattern in patterns:
-        if not any(_matches(item, pattern) for item in found):
+        if not any(_Patterns(profile, [pattern]).fit(names) for profile, names in named.items()):
             ids = [item.test.id for item in found]
             known = dict.fromkeys(name for item in found for name in item.names)
             hint = did_you_mean(pattern, known) or f"; the profile has {ids[0]} to {ids[-1]}" if ids else ""
@@ -145,10 +150,28 @@ def _refuse_idle(found: Sequence[Assignment], patterns: Sequence[str], field: st
 
 
 def _matching(found: Sequence[Assignment], patterns: Sequence[str]) -> tuple[Assignment, ...]:
-    return tuple(item for item in found if any(_matches(item, pattern) for pattern in patterns))
+    of = {profile: _Patterns(profile, patterns) for profile in _by_profile(found)}
+    return tuple(item for item in found if of[item.profile.id].fit({name.lower() for name in item.names}))
 
 
-def _matches(item: Assignment, pattern: str) -> bool:
-    of_profile = f"{item.profile.id}.".lower()
-    asked = pattern.lower().removeprefix(of_profile)
-    return any(fnmatchcase(name.lower(), asked) for name in item.names)
+def _by_profile(found: Sequence[Assignment]) -> dict[str, set[str]]:
+    """Names of tests, in small letters, by the id of their profile."""
+    named: dict[str, set[str]] = {}
+    for item in found:
+        named.setdefault(item.profile.id, set()).update(name.lower() for name in item.names)
+    return named
+
+
+class _Patterns:
+    """Patterns as they select tests of one profile: whole names, which are looked up, and all others."""
+
+    def __init__(self, profile: str, patterns: Sequence[str]) -> None:
+        asked = [pattern.lower().removeprefix(f"{profile}.".lower()) for pattern in patterns]
+        self._whole = {pattern for pattern in asked if not _WILD.search(pattern)}
+        self._others = [pattern for pattern in asked if pattern not in self._whole]
+
+    def fit(self, names: Collection[str]) -> bool:
+        """Whether any of them matches any of the names."""
+        if not self._whole.isdisjoint(names):
+            return True
+        return any(fnmatchcase(name, pattern) for pattern in self._others for name in names)

@@ -256,10 +256,11 @@ def _device_of(place: Path) -> int:
 
 
 def _results_in(folder: Path) -> Any:
-    """The results in a folder as they were written; None of no or unreadable ones."""
+    """The results in a folder as they were written; None of no or unreadable ones, or of what is no ordinary file."""
+    file = folder / RESULTS
     try:
-        return json.loads((folder / RESULTS).read_bytes())
-    except (OSError, ValueError):
+        return json.loads(file.read_bytes()) if file.is_file() else None  # a pipe would be waited for
+    except (OSError, ValueError, RecursionError):
         return None
 
 

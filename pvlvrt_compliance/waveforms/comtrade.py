@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from pvlvrt_compliance.texts import one_line
 from pvlvrt_compliance.waveforms.container import STATUS_CHANNELS, Segment, Waveforms, unit_of
 
 EPOCH = datetime(2000, 1, 1, tzinfo=UTC)
@@ -88,7 +89,7 @@ def write_comtrade(
 
 
 def _clean(text: str) -> str:
-    return "".join(" " if c == "," or not c.isprintable() else c for c in text)[:_LONGEST_NAME]
+    return one_line(text).replace(",", " ")[:_LONGEST_NAME]
 
 
 def _phase(name: str) -> str:

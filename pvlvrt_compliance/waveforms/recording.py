@@ -1,20 +1,30 @@
-"""Reading a recording of any make: CSV, or COMTRADE through the package of that name; several steps as segments."""
+"""Reading a recording of any make: CSV or COMTRADE; several steps as segments."""
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from pvlvrt_compliance.errors import MeasurementError, UsageError, did_you_mean
-from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
+from pvlvrt_compliance.ordinary_file import NotOrdinaryError, TooLargeError, content_of
+from pvlvrt_compliance.waveforms.columns import PER_UNIT, Column, DamagedError, NoChannelError
+from pvlvrt_compliance.waveforms.comtrade_header import pieces_of, read_header
+from pvlvrt_compliance.waveforms.comtrade_reading import read_samples
+from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms, unit_of
+from pvlvrt_compliance.waveforms.csv_reading import read_csv
 from pvlvrt_compliance.waveforms.joining import window_on_one_grid
 
+LARGEST_RECORD_BYTES = 1 << 30
+"""Of a record that somebody names himself: what a computer of 4 GB reads (chosen)."""
+
 _UNEVEN = 1e-3  # largest change from one step to the next within a segment, as a fraction of it
+_OURS = re.compile(r"(u0?|i)_[abc]_(k?[va]|pu)")  # names of channels that every file may be told to have
 
 
 def read_recording(path: Path, channels: Sequence[str]) -> Segment:
-    """Read some channels of a CSV file (column ``t_s``) or of a COMTRADE file (``.cfg``).
+    """Read some channels of a CSV file (column ``t_s``) or of a COMTRADE file (``.cfg``, or ``.cff``).
 
     Of a record of several sampling steps, the samples on the grid of the coarsest.
 
@@ -23,7 +33,17 @@ def read_recording(path: Path, channels: Sequence[str]) -> Segment:
     UsageError
         When the file or a channel is not there, or the samples are not on a uniform grid.
     """
-    waveforms = read_waveforms(path, channels)
+    return on_one_grid(read_waveforms(path, channels), path)
+
+
+def on_one_grid(waveforms: Waveforms, path: Path) -> Segment:
+    """A recording as one segment, on the grid of its coarsest.
+
+    Raises
+    ------
+    UsageError
+        When its segments do not fit each other.
+    """
     first, last = waveforms.segments[0], waveforms.segments[-1]
     try:
         return window_on_one_grid(waveforms, first.t0_s, last.end_s + last.dt_s)
@@ -31,26 +51,87 @@ def read_recording(path: Path, channels: Sequence[str]) -> Segment:
         raise UsageError(f"{path}: the samples are not evenly spaced in time ({error})") from None
 
 
-def read_waveforms(path: Path, channels: Sequence[str] | None = None) -> Waveforms:
+def read_waveforms(path: Path, channels: Sequence[str] | None = None, *, within: Path | None = None) -> Waveforms:
     """Read a file, or some channels of it, with a segment for every change of the sampling step.
+
+    Voltages and currents are in V and A, of a COMTRADE file those of the primary side: a column in kV, by the ending of
+    its name, is that in V; what a configuration has as secondary values is multiplied by the ratio of the transformer.
+    All of it must lie in or below the folder ``within``, where one is given.
 
     Raises
     ------
     UsageError
-        As `read_recording`; segments may lie on grids of their own, but are evenly spaced.
+        As `read_recording`; segments may lie on grids of their own, but are evenly spaced. Also where one of our own
+        channels is per unit, or in another unit than its name says.
     """
+    t, columns = read_columns(path, channels, within=within)
+    _refuse_other_units(path, columns)
+    return in_segments(path, t, {name: column.samples for name, column in columns.items()})
+
+
+def read_columns(
+    path: Path,
+    channels: Sequence[str] | None = None,
+    *,
+    most_bytes: int = LARGEST_RECORD_BYTES,
+    within: Path | None = None,
+) -> tuple[Samples, dict[str, Column]]:
+    """Times (s) and columns of a file.
+
+    Parameters
+    ----------
+    path : Path
+    channels : sequence of str, optional
+        Names; all by default.
+    most_bytes : int
+        How large it may be, and of COMTRADE each of its files.
+    within : Path, optional
+        Folder that all of it must lie in or below.
+
+    Raises
+    ------
+    UsageError
+        When the file cannot be read or a channel is not there. It never has what is in the file: whoever names a file
+        for others to read learns nothing from it.
+    """
+
+    def content(file: Path) -> bytes:
+        return content_of(file, most_bytes, within)
+
     try:
-        t, columns = _read_comtrade(path) if path.suffix.lower() == ".cfg" else _read_csv(path)
-    except (OSError, UnicodeDecodeError, ValueError, IndexError) as error:
-        raise UsageError(f"{path}: cannot be read as a recording ({error})") from None
-    names = tuple(columns) if channels is None else channels
-    for name in names:
-        if name not in columns:
-            raise UsageError(f"{path}: no channel {name!r}{did_you_mean(name, columns)}; it has {', '.join(columns)}")
+        if path.suffix.lower() == ".cff":
+            configuration, samples = pieces_of(content(path))
+            return read_samples(read_header(configuration), samples, channels)
+        if path.suffix.lower() != ".cfg":
+            return read_csv(content(path), channels)
+        header = read_header(content(path))
+        files = files_of(path)
+        if len(files) < 2:
+            raise DamagedError("there is no .dat file beside it")
+        return read_samples(header, content(files[1]), channels)
+    except TooLargeError:
+        raise UsageError(f"{path}: larger than {most_bytes >> 20} MiB, which a recording may have") from None
+    except (NotOrdinaryError, DamagedError) as error:
+        reason = str(error).removeprefix("cannot be read: ")
+        raise UsageError(f"{path}: cannot be read as a recording ({reason})") from None
+    except NoChannelError as error:
+        ours = [name for name in error.others if _OURS.fullmatch(name)]
+        hint = did_you_mean(error.name, ours)
+        raise UsageError(f"{path}: no channel {error.name!r} among its {len(error.others)}{hint}") from None
+
+
+def in_segments(path: Path, t: Samples, columns: Mapping[str, Samples]) -> Waveforms:
+    """Samples with a segment for every change of their step.
+
+    Raises
+    ------
+    UsageError
+        When there are fewer than two, or the times are not those of a recording.
+    """
     bounds = _bounds(t, path)
     return Waveforms(
         tuple(
-            Segment(float(t[i]), _step(t[i:j], path), {name: columns[name][i:j] for name in names})
+            Segment(float(t[i]), _step(t[i:j], path), {name: x[i:j] for name, x in columns.items()})
             for i, j in pairwise(bounds)
         )
     )
@@ -65,10 +146,24 @@ def files_of(recording: Path) -> list[Path]:
     return [recording, *[file for file in samples if file.is_file()][:1]]
 
 
+def _refuse_other_units(path: Path, columns: Mapping[str, Column]) -> None:
+    """Refuse numbers that would be taken for volts or amperes."""
+    for name, (_, unit) in columns.items():
+        if not _OURS.fullmatch(name):
+            continue
+        if unit == PER_UNIT:
+            said = "is per unit, of a base that the file does not say; it is needed in V, kV, A or kA"
+            raise UsageError(f"{path}: the channel {name!r} {said}")
+        if unit not in ("", unit_of(name)):
+            raise UsageError(f"{path}: the channel {name!r} is not in {unit_of(name)} by its unit")
+
+
 def _bounds(t: Samples, path: Path) -> list[int]:
     """First sample of every stretch of even steps, then the number of samples."""
     if len(t) < 2:
         raise UsageError(f"{path}: a recording needs two samples at least")
+    if not np.isfinite(t).all():
+        raise UsageError(f"{path}: a time is no finite number")
     steps = np.diff(t)
     if not steps.min() > 0:
         raise UsageError(f"{path}: the times do not increase")
@@ -83,26 +178,3 @@ def _step(t: Samples, path: Path) -> float:
     if not dt > 0 or np.abs(np.diff(t) - dt).max() > _UNEVEN * dt:
         raise UsageError(f"{path}: the samples are not evenly spaced in time")
     return dt
-
-
-def _read_csv(path: Path) -> tuple[Samples, dict[str, Samples]]:
-    with path.open(encoding="utf-8") as file:
-        names = [name.strip() for name in file.readline().split(",")]
-        values = np.loadtxt(file, delimiter=",", ndmin=2, dtype=np.float64)
-    columns = {name: np.ascontiguousarray(values[:, k]) for k, name in enumerate(names)}
-    if "t_s" not in columns:
-        raise ValueError("there is no column t_s")
-    return columns.pop("t_s"), columns
-
-
-def _read_comtrade(path: Path) -> tuple[Samples, dict[str, Samples]]:
-    from comtrade import Comtrade
-
-    record = Comtrade(use_double_precision=True)
-    record.load(str(path))
-    named = [
-        *zip(record.analog_channel_ids, record.analog, strict=True),
-        *zip(record.status_channel_ids, record.status, strict=True),
-    ]
-    columns = {name: np.asarray(values, dtype=np.float64) for name, values in named}
-    return np.asarray(record.time, dtype=np.float64), columns

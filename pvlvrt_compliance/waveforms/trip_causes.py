@@ -6,6 +6,7 @@ TRIP_CAUSES = (
     "DC over-voltage relay of the plant",
     "under-voltage relay of the plant",
     "frequency relay of the plant",
+    "controller",
 )
 """Cause of a trip by code, as `plant.protection` numbers them; a record of another kind may hold none of them."""
 

@@ -1,13 +1,15 @@
 """What a test result carries, and checks from other packages."""
 
+import gc
 import math
+import weakref
 from pathlib import Path
 
 import numpy as np
 import pytest
 from demands import CONTROL_STEP_S
 
-from pvlvrt_compliance.checks.evaluate import errored, evaluate
+from pvlvrt_compliance.checks.evaluate import errored, evaluate, evidence_of
 from pvlvrt_compliance.checks.summary import summarise
 from pvlvrt_compliance.profile import load_profile
 from pvlvrt_compliance.results import Status
@@ -258,3 +260,22 @@ def test_every_number_is_finite(bench):
     numbers = [x for c in made.result().checks for x in (c.measured, c.limit, c.margin, c.at_s) if x is not None]
     assert numbers
     assert all(map(math.isfinite, np.asarray(numbers)))
+
+
+def test_a_record_that_is_judged_is_let_go(bench, monkeypatch):
+    """Nothing that was made of it holds it, so that its memory is there for the next one at once."""
+    kept = []
+
+    def seen(*arguments):
+        made = evidence_of(*arguments)
+        kept.append(weakref.ref(made))
+        return made
+
+    monkeypatch.setattr("pvlvrt_compliance.checks.evaluate.evidence_of", seen)
+    gc.collect()
+    gc.disable()
+    try:
+        bench(q_sag_kvar=250).result()
+        assert [made() for made in kept] == [None]
+    finally:
+        gc.enable()

@@ -7,6 +7,7 @@ import resource
 import sys
 
 from pvlvrt_compliance.cli.main import main
+from pvlvrt_compliance.controllers.process import child
 from pvlvrt_compliance.study import records
 from pvlvrt_compliance.study.store import OutputFolder
 
@@ -25,4 +26,5 @@ if __name__ == "__main__":
     limit = int(sys.argv.pop(1))
     _limit_from(records, "write_comtrade", limit)
     _limit_from(OutputFolder, "write", limit)
+    _limit_from(child, "start", limit)  # which then holds for the processes that run tests
     main()

@@ -12,7 +12,7 @@ clause = "9.9"
 source = "mine"
 """
 TRIP = ("--set", "protection.overcurrent_pu=1.1")
-OVERFLOW = ("--set", "controller.sogi_gain=1e300")
+OVERFLOW = ("--set", "controller.sogi_gain=1000")
 NOT_STARTED = ("--irradiance", "800", "--set", "controller.mppt_voltage_max_v=610")
 
 

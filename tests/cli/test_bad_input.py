@@ -77,7 +77,7 @@ BAD = {
     "vector group in small letters": ((*MAIN, "--transformer", "dyn-11"), 'did you mean "Dyn11"?'),
     "grid without strength": ((*MAIN, "--scr", "0"), "scr: must be greater than 0.5"),
     "strength that is not a number": ((*MAIN, "--scr", "nan"), "--scr: 'nan' is not a ratio; write 10 or 2.5"),
-    "X/R": ((*MAIN, "--xr", "-1"), "xr: must be greater than 0"),
+    "X/R": ((*MAIN, "--xr", "-1"), "xr: must be greater than or equal to 0.01"),
     "irradiance": ((*MAIN, "--irradiance", "5000"), "--irradiance: must be less than or equal to 1500"),
     "temperature": ((*MAIN, "--temperature", "500"), "--temperature: must be less than or equal to 90"),
     "point on wave": ((*MAIN, "--point-on-wave", "1000"), "--point-on-wave: must be less than or equal to 360"),
@@ -91,7 +91,7 @@ BAD = {
     ),
     "parameter without value": ((*MAIN, "--set", "controller.sogi_gain"), "write --set group.name=value"),
     "parameter out of range": ((*MAIN, "--set", "plant.filter_inductance_h=0"), "--set plant.filter_inductance_h: "),
-    "unknown fidelity": ((*MAIN, "--fidelity", "exact"), "--fidelity: Input should be 'averaged' or 'switched'"),
+    "unknown fidelity": ((*MAIN, "--fidelity", "exact"), "--fidelity: must be 'averaged' or 'switched'"),
     "fidelity twice": (
         (*MAIN, "--fidelity", "switched", "--set", "simulation.fidelity=averaged"),
         "--fidelity: given twice",

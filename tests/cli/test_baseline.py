@@ -280,7 +280,7 @@ def test_what_is_advised_of_a_broken_file_mends_it(command, here, broken, by_han
 @pytest.mark.usefixtures("here")
 def test_a_baseline_that_could_not_be_read_again_is_not_written(command):
     """It says what would make it smaller."""
-    _write_results(*(case_of(f"t{'x' * 1000}{n}", verdict("pass", 1.0)) for n in range(1100)))
+    _write_results(*(case_of(f"t{'x' * 380}{n}", verdict("pass", 1.0)) for n in range(2600)))
     ended = command("baseline", "update", "--margins")
     assert ended.status == 2
     assert "would be larger than 1 MiB; --no-margins leaves out what passed" in ended.err

@@ -25,13 +25,13 @@ def start(tmp_path):
     pid_file = tmp_path / "pid"
     started = []
 
-    def start(hangs):
+    def start(hangs, *more):
         settings = (f"controller.pid_file={pid_file}", f"controller.hangs={str(hangs).lower()}")
         process = subprocess.Popen(
             [
                 *(sys.executable, "-m", "pvlvrt_compliance.cli.main", "--profile", "iec61400-21", "--sag", "50%"),
                 *("--controller", f"{CONTROLLER}:Controller", "--set", settings[0], "--set", settings[1]),
-                *("--output", tmp_path / "out"),
+                *("--output", tmp_path / "out", *more),
             ],
             env=os.environ | {"TMPDIR": str(tmp_path / "tmp")},
             stdout=subprocess.PIPE,
@@ -78,12 +78,26 @@ def test_the_end_of_the_run_is_the_end_of_its_children(start, tmp_path):
 
 
 @pytest.mark.slow
+def test_time_counts_while_the_command_is_stopped(start, tmp_path):
+    """Its controller ends at its limit, and what that has started; the command goes on where it was."""
+    process, child = start(True, "--set", "simulation.time_limit_s=5")
+    process.send_signal(signal.SIGSTOP)
+    wait_until(lambda: not Path(f"/proc/{child}").exists(), "the end of the controller")
+    process.send_signal(signal.SIGCONT)
+    out, err = process.communicate(timeout=PATIENCE_S)
+    assert process.returncode == 3, err
+    assert "stopped after 5 s of computing (simulation.time_limit_s)" in out
+    assert "Traceback" not in out + err
+    assert list((tmp_path / "tmp").iterdir()) == []
+
+
+@pytest.mark.slow
 def test_what_a_killed_command_leaves_in_the_temporary_folder(start, program, tmp_path):
     """It is gone once the next run has begun, whatever controller that has."""
     process, child = start(hangs=True)
     process.kill()
     process.communicate(timeout=PATIENCE_S)
-    os.kill(child, signal.SIGKILL)  # nobody is left who could
+    wait_until(lambda: not Path(f"/proc/{child}").exists(), "the end of what is in a session of its own")
     assert len(list((tmp_path / "tmp").iterdir())) == 2
     arguments = ("--profile", "iec61400-21", "--sag", "90%", "--output", tmp_path / "out")
     assert program(*arguments, TMPDIR=str(tmp_path / "tmp")).status == 0

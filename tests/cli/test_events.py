@@ -1,5 +1,8 @@
 """Events from a file, sags by type and faults beyond a transformer, at the command line."""
 
+import os
+import sys
+
 import pytest
 
 MAIN = ("--profile", "iec61400-21", "--sag", "50%")
@@ -65,3 +68,35 @@ def test_wrong_options_are_refused(command, tmp_path, options):
     assert ended.status == 2
     assert options[0] in ended.err
     assert len(ended.err.strip().splitlines()) == 1
+
+
+RECORDING = "[[events]]\nkind = 'recording'\nt_s = 0.0\nfile = '{}'\n"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes and devices of POSIX")
+@pytest.mark.parametrize("file", ["pipe.csv", "/dev/zero", "/etc/passwd", "../events.toml", "folder", "none.csv"])
+def test_what_is_no_recording_is_not_waited_for(command, events_file, tmp_path, file):
+    """One line with file, line and key; nothing of it is shown, and nothing is simulated or written."""
+    os.mkfifo(tmp_path / "pipe.csv")
+    (tmp_path / "folder").mkdir()
+    events = events_file(RECORDING.format(file))
+    ended = command("--profile", "iec61400-21", "--sag", "0%", "--events", events, "--output", tmp_path / "out")
+    assert (ended.status, ended.out) == (2, "")
+    assert ended.err.startswith(f"pvlvrt-check: {events}:4: events[0].file: {file}: ")
+    assert ended.err.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_project_says_where_its_recordings_lie(command, events_file, tmp_path, monkeypatch):
+    """In its file of settings, by a path that counts from there; the command that is recorded says it, too."""
+    rows = (f"{k * 1e-3:.3f},{400 * (k % 20 < 10)},0,0" for k in range(40))
+    (tmp_path / "pool").mkdir()
+    (tmp_path / "pool" / "fault.csv").write_text("\n".join(["t_s,u_a_v,u_b_v,u_c_v", *rows]) + "\n", "utf-8")
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "pvlvrt.toml").write_text("recordings = 'pool'\n", "utf-8")
+    events = events_file(RECORDING.format("fault.csv"))
+    monkeypatch.chdir(tmp_path / "sub")
+    ended = command("--profile", "iec61400-21", "--sag", "0%", "--events", events, "--list")
+    assert (ended.status, "sag-0pct-abc" in ended.out) == (0, True)
+    ended = command("--profile", "iec61400-21", "--sag", "0%", "--events", events, "--list", "--isolated")
+    assert (ended.status, "fault.csv: cannot be read as a recording (No such" in ended.err) == (2, True)

@@ -7,7 +7,7 @@ import sys
 import pytest
 import typer
 
-from pvlvrt_compliance.cli.main import app
+from pvlvrt_compliance.cli.main import _commands_for, app
 from pvlvrt_compliance.cli.typed import read_what_is_given
 from pvlvrt_compliance.results.files import BASELINE, FOLDER
 
@@ -135,3 +135,28 @@ def test_a_command_reads_what_is_given(words, read):
     read_what_is_given(command, words)
     assert [param.name for param in command.params] == (read or [param.name for param in everything])
     assert command.add_help_option == (read is None)
+
+
+def found(command, words):
+    """A command within others, by the words that call it."""
+    for word in words:
+        command = command.commands[word]
+    return command
+
+
+@pytest.mark.parametrize("words", [words for words in commands() if words], ids=" ".join)
+def test_a_command_is_the_same_without_the_others(words):
+    """What a line calls is made without the commands that it does not: the same options, in the same words."""
+    alone, among_all = found(_commands_for(words), words), found(typer.main.get_command(app), words)
+    assert list(_commands_for(words).commands) == [words[0]]
+    assert (alone.name, alone.help, alone.short_help) == (among_all.name, among_all.help, among_all.short_help)
+    assert list(getattr(alone, "commands", {})) == list(getattr(among_all, "commands", {}))
+    for one, other in zip(alone.params, among_all.params, strict=True):
+        for name in ("name", "opts", "secondary_opts", "help", "metavar", "required", "multiple", "nargs", "hidden"):
+            assert getattr(one, name, None) == getattr(other, name, None), (one.name, name)
+
+
+@pytest.mark.parametrize("words", [[], ["--version"], ["--sag", "90%"], ["kompare"], ["check"]], ids=" ".join)
+def test_all_commands_are_there_where_none_is_named(words):
+    """Whatever else begins a line is for the main command, or to be refused by what there is."""
+    assert list(_commands_for(words).commands) == list(typer.main.get_command(app).commands)

@@ -1,6 +1,7 @@
 """`--shard` and `merge`: parts of a run, and the run that they make."""
 
 import json
+import os
 import shutil
 from zipfile import ZIP_DEFLATED, ZipFile
 
@@ -29,12 +30,12 @@ def merge(command, made, tmp_path, monkeypatch):
     folder, _ = made
     monkeypatch.chdir(tmp_path)
 
-    def merge(change=None, names=("1", "2")):
+    def merge(change=None, names=("1", "2"), more=()):
         for name in ("1", "2"):
             shutil.copytree(folder / name / "out", tmp_path / name)
         if change:
             change(tmp_path / "2")
-        return command("merge", *names, "--output", "out", "-q", SOURCE_DATE_EPOCH="1700000000")
+        return command("merge", *names, *more, "--output", "out", "-q", SOURCE_DATE_EPOCH="1700000000")
 
     return merge
 
@@ -51,6 +52,23 @@ def test_parts_make_the_run_that_they_are_of(made, merge, tmp_path, names):
     assert merge(names=names) == said["whole"]
     assert files(tmp_path / "out") == files(folder / "whole" / "out")
     assert said["whole"].status == 1
+
+
+def test_the_whole_may_have_more_formats(made, merge, tmp_path):
+    """One that shows no figures is made of what the parts have found, and is in the recorded command."""
+    folder, said = made
+    assert merge(more=("--format", "markdown", "--format", "html")).status == said["whole"].status
+    found, whole = files(tmp_path / "out"), files(folder / "whole" / "out")
+    assert found.keys() - whole.keys() == {"report.md"}
+    command = json.loads(found["results.json"])["provenance"]["command"]
+    assert command.endswith("--output out --format markdown --format html")
+
+
+def test_figures_of_another_form_are_not_there(merge):
+    """They were to be made with the records."""
+    ended = merge(more=("--format", "pdf"))
+    said = "pvlvrt-check: --format pdf: its figures are made with the records: give it with the parts\n"
+    assert (ended.status, ended.err) == (2, said)
 
 
 def test_a_part_says_that_it_is_one(made):
@@ -82,6 +100,13 @@ def with_record(name):
     return replaced("results.json", '"wall_time_s"', f'"waveforms": "{name}", "wall_time_s"')
 
 
+def linked_record(folder):
+    """Records of either part that are links to a file of somebody else's."""
+    for file in folder.parent.glob("*/waveforms/*"):
+        file.unlink()
+        file.symlink_to("/etc/passwd")
+
+
 def with_head(**values):
     """A change of what a part says of the whole."""
     return repacked(lambda head, made: (head | values, made))
@@ -90,6 +115,11 @@ def with_head(**values):
 def with_made(content):
     """A change of what was made of its records."""
     return repacked(lambda head, _: (head, content))
+
+
+def with_picture(end):
+    """A change of the end of the first picture."""
+    return repacked(lambda head, made: (head, made.replace(b"</svg>", end, 1)))
 
 
 def repacked(change_of):
@@ -103,6 +133,12 @@ def repacked(change_of):
             file.writestr("made.json", made)
 
     return change
+
+
+def in_place_of_the_part(folder):
+    """A pipe that nobody writes to, where the system has such; else a folder."""
+    (folder / "shard.zip").unlink()
+    getattr(os, "mkfifo", os.mkdir)(folder / "shard.zip")
 
 
 @pytest.mark.parametrize(
@@ -121,6 +157,7 @@ def repacked(change_of):
         (with_made(b"null"), ("1", "2"), "2/shard.zip: is damaged: "),
         (with_made(b"[" * 100_000), ("1", "2"), "2/shard.zip: is damaged: "),
         (with_made(b'{"a": 5}'), ("1", "2"), "2/shard.zip: is damaged: a: is nothing that is made of a record"),
+        (with_picture(b"<script>alert(1)</script></svg>"), ("1", "2"), "is damaged: a picture has an element 'script'"),
         (with_made(b" " * 10_000_000), ("1", "2"), "2/shard.zip: is damaged: made.json would be 10000000 bytes"),
         (
             with_record("waveforms/../../1/results.json"),
@@ -128,8 +165,10 @@ def repacked(change_of):
             "there is no 'waveforms/../../1/results.json' in 2",
         ),
         (with_record("/etc/passwd"), ("1", "2"), "there is no '/etc/passwd' in 2"),
+        (linked_record, ("1", "2"), "leads out of the folder that it may lie in"),
         (lambda folder: (folder / "shard.zip").unlink(), ("1", "2"), "it is no part of a run (--shard makes parts)"),
         (lambda folder: (folder / "shard.zip").write_bytes(b"no"), ("1", "2"), "2/shard.zip: is damaged: "),
+        (in_place_of_the_part, ("1", "2"), "2/shard.zip: cannot be read: it is no ordinary file"),
         (lambda folder: (folder / "results.json").unlink(), ("1", "2"), "2/results.json: cannot be read"),
         (replaced("results.json", '"profile_digest": "', '"profile_digest": "0'), ("1", "2"), "record profile_digest"),
         (replaced("results.json", '"numba": "', '"numba": "9'), ("1", "2"), "record versions numba: '9"),

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 import pvlvrt_compliance
-from pvlvrt_compliance.cli.main import run
+from pvlvrt_compliance.cli import start
 
 
 def as_module(*arguments, cwd):
@@ -52,4 +52,4 @@ def test_importing_it_runs_nothing(capsys):
     import pvlvrt_compliance.__main__ as program
 
     assert capsys.readouterr() == ("", "")
-    assert program.main is sys.modules[run.__module__].main
+    assert program.main is start.main

@@ -31,6 +31,7 @@ TOUCHES = {
     "catalogue.py": {"study.job", "study.selection"},
     "compare.py": {"output", "study.comparing", "study.job", "study.overlays"},  # two results load no kernel
     "main.py": {"controllers.process"},
+    "typed.py": {"controllers.spelling"},  # how one is written
     "baseline/update.py": {"study.baseline.files"},
     "controllers/inspect.py": {"controllers", "simulation.parameters"},  # which load no kernel
     "controllers/new.py": {"controllers.projects"},

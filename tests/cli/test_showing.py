@@ -70,3 +70,17 @@ def test_nothing_is_said_where_all_is_verified(said, results):
 def test_every_report_that_was_asked_for_is_named(said, formats, files):
     """Behind the page stand the files that are only written when they are asked for."""
     assert said("Report: ", formats=formats) == [f"Report: out/report.html{files}"]
+
+
+@pytest.mark.parametrize("name", ["COLUMNS", "LINES"])
+@pytest.mark.parametrize("size", ["9" * 5000, "\u00b2", "0", "-80", "wide", ""])
+def test_a_size_that_is_none_is_as_no_size(command, name, size):
+    """Whatever the environment says of a terminal, a table is printed as it is without."""
+    assert command("profiles", "list", **{name: size}) == command("profiles", "list")
+
+
+def test_a_width_of_the_help_that_is_none(program):
+    """The help is drawn as wide as without."""
+    ended = program("profiles", "--help", TERMINAL_WIDTH="wide")
+    assert (ended.status, ended.err) == (0, "")
+    assert ended == program("profiles", "--help")

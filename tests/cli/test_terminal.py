@@ -1,46 +1,21 @@
 """What a person at a terminal sees and a file does not: colour, and a bar while it lasts."""
 
-import contextlib
 import os
 import re
-import subprocess
-import sys
 
 import pytest
+
+from terminals import at_terminal
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="Windows has no pseudo-terminals of this kind")
 
 _COLOUR = re.compile(r"\x1b\[(?:\d+;)*3[0-9](?:;\d+)*m")
 
 
-def _at_terminal(*arguments, cwd, **environment):
-    """Exit status, and all that a terminal of 80 columns gets."""
-    import pty
-
-    ours, theirs = pty.openpty()
-    inherited = {name: value for name, value in os.environ.items() if name not in {"NO_COLOR", "FORCE_COLOR"}}
-    settings = {"TERM": "xterm-256color", "COLUMNS": "80", "LINES": "40", **environment}
-    process = subprocess.Popen(
-        [sys.executable, "-m", "pvlvrt_compliance.cli.main", "--profile", "iec61400-21", *arguments],
-        cwd=cwd,
-        env=inherited | settings,
-        stdin=subprocess.DEVNULL,
-        stdout=theirs,
-        stderr=theirs,
-    )
-    os.close(theirs)
-    seen = b""
-    with contextlib.suppress(OSError):  # Linux says so when the other end is closed
-        while chunk := os.read(ours, 65536):
-            seen += chunk
-    os.close(ours)
-    return process.wait(), seen.decode()
-
-
 @pytest.fixture(scope="module")
 def seen(tmp_path_factory):
     """Two tests at a terminal."""
-    return _at_terminal("--test", "VD3-full-*", "--verbose", cwd=tmp_path_factory.mktemp("terminal"))
+    return at_terminal("--test", "VD3-full-*", "--verbose", cwd=tmp_path_factory.mktemp("terminal"))
 
 
 def test_progress_is_shown_and_taken_away(seen):
@@ -67,12 +42,12 @@ def test_no_word_is_cut(seen):
 
 def test_no_color(tmp_path):
     """NO_COLOR is honoured at a terminal."""
-    status, text = _at_terminal("--test", "VD3-full-1", cwd=tmp_path, NO_COLOR="1")
+    status, text = at_terminal("--test", "VD3-full-1", cwd=tmp_path, NO_COLOR="1")
     assert status == 0
     assert not _COLOUR.search(text)
 
 
 def test_quiet_shows_no_bar(tmp_path):
     """--quiet is one line at a terminal, too."""
-    status, text = _at_terminal("--test", "VD3-full-1", "--quiet", cwd=tmp_path, NO_COLOR="1")
+    status, text = at_terminal("--test", "VD3-full-1", "--quiet", cwd=tmp_path, NO_COLOR="1")
     assert (status, text.strip()) == (0, "PASS: 1 test; checks: 7 pass; 1 marginal; 26 tests not selected")

@@ -1,6 +1,7 @@
 """What cannot be written is status 3 and one true line: where it was to go, and what has been written all the same."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -39,6 +40,17 @@ def test_no_room_for_a_record(folder):
         f"pvlvrt-check: {folder}/waveforms/sag-90pct-abc.dat cannot be written: File too large;"
         " 0 of 1 tests were finished, nothing was written\n",
     )
+    assert [p.name for p in folder.iterdir()] == ["report.html"]
+
+
+@POSIX
+@pytest.mark.slow
+def test_no_room_for_a_record_of_another_process(folder):
+    """What a process that runs tests cannot write ends the run as it would here, in the same words."""
+    status, out, err = _limited(10_000, "--profile", "iec61400-21", "--jobs", "2", "--output", folder)
+    said = "cannot be written: File too large; 0 of 27 tests were finished, nothing was written"
+    assert (status, out) == (3, "")
+    assert re.fullmatch(rf"pvlvrt-check: {re.escape(str(folder))}/waveforms/\S+\.dat {said}\n", err)
     assert [p.name for p in folder.iterdir()] == ["report.html"]
 
 

@@ -247,3 +247,18 @@ def test_the_main_job_needs_no_numba(tmp_path):
         command = [sys.executable, "-c", MAIN, str(tmp_path)]
         last = subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()[-1]
     assert last == "0 False"
+
+
+@pytest.mark.parametrize(
+    "x",
+    [np.arange(6.0), np.arange(6.0)[1:], np.arange(6.0)[::2], np.arange(6.0).reshape(2, 3).T, np.empty((0, 3))],
+    ids=["whole", "its end", "every other", "turned", "empty"],
+)
+def test_an_array_is_where_numpy_has_it(x):
+    """Whether it may be written or not, in one piece or not, and of no number at all."""
+    for writeable in (True, False):
+        x.flags.writeable = writeable
+        found = flat([x])
+        order = "C" if x.flags.c_contiguous else "F" if x.flags.f_contiguous else "A"
+        assert found.kinds == (("<f8", x.ndim, order, writeable),)
+        assert found.words == [x.__array_interface__["data"][0], *x.shape, *x.strides]

@@ -20,7 +20,7 @@ from pvlvrt_compliance.compiled import sources as sources_module
 from pvlvrt_compliance.compiled.sources import Sources
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.simulation.loop import run
-from pvlvrt_compliance.simulation.streaming import averages, frequency
+from pvlvrt_compliance.simulation.streaming import averages, frequency, harmonics, whole_cycles
 
 PACKAGE = Path(pvlvrt_compliance.__file__).parent
 HERE = Path(__file__).parent
@@ -106,7 +106,7 @@ def test_every_block_is_a_source_of_an_entry(found):
         if decorated.search(path.read_text(encoding="utf-8"))
     }
     assert f"{PACKAGE.name}.control.lvrt" in users
-    measuring = (averages.sequences_into, averages.powers_into, frequency.frequency_pass)
+    measuring = (averages.phasors_into, frequency.frequency_pass, harmonics.harmonics_into, whole_cycles.sums_into)
     counted = {module for entry in measuring for module in kernel.sources_of(entry).texts}
     assert users <= counted | {module for entry in found.values() for module in entry["files"]}
 

@@ -132,7 +132,7 @@ def test_without_voltage_the_estimate_stays_finite_and_guarded(chosen, algorithm
 def test_decoupled_frames_at_the_right_angle_are_a_generator(track):
     """With a loop that hardly moves, the DDSRF has the sequences of a DSOGI with K = 2 w_f/w, in transients too."""
     u = vector(50, 0.1, {1: 0.7 * U, -1: 0.3 * U, -5: 0.1 * U})
-    frames = track(u, 50, "synchronisation=ddsrf-pll", "pll_bandwidth_hz=1e-6", "ddsrf_filter_ratio=0.5")
+    frames = track(u, 50, "synchronisation=ddsrf-pll", "pll_bandwidth_hz=0.01", "ddsrf_filter_ratio=0.5")
     generator = track(u, 50, "synchronisation=dsogi-fll", K=1.0, gamma=0.0)
     assert np.abs(frames.u_pos - generator.u_pos).max() < 0.01 * U
     assert np.abs(frames.u_neg - generator.u_neg).max() < 0.01 * U

@@ -29,10 +29,11 @@ def kept(x: ControllerState, p: ControllerParams):
 
 @cached_kernel
 def advance(states, params, u: Phases, i: Phases, v_dc: float, i_pv: float):
-    """Advance by one sample: the modulating signals by half the link, and what the controller believes."""
+    """Advance by one sample: modulating signals by half the link, what it believes, and the currents that it wants."""
     measured = Measured(u_g_ab=vector_of(u), i_ab=vector_of(i), v_dc=v_dc, i_pv=i_pv)
     states[0], signals = controller_step(states[0], measured, params[0])
-    return phases_of(scaled(4 / 3, signals.m)), (signals.V_fault, signals.Q_ref, signals.P_ref)
+    beliefs = (signals.V_fault, signals.Q_ref, signals.P_ref)
+    return phases_of(scaled(4 / 3, signals.m)), beliefs, phases_of(signals.i_ref)
 
 
 class Bundled:
@@ -53,7 +54,7 @@ class Bundled:
     def step(self, y):
         """Advance by one sample."""
         u, i = Phases(y.u_a_v, y.u_b_v, y.u_c_v), Phases(y.i_a_a, y.i_b_a, y.i_c_a)
-        m, self.beliefs = advance(self.states, self.params, u, i, y.v_dc_v, y.i_pv_a)
+        m, self.beliefs, self.wanted = advance(self.states, self.params, u, i, y.v_dc_v, y.i_pv_a)
         return m
 
     def signals(self):

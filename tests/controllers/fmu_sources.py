@@ -75,14 +75,14 @@ def packed(folder: Path, text: str, binary: Path | None, place: str) -> Path:
     return file
 
 
-def compiled(folder: Path, version: int) -> Path:
-    """Binary of the small FMU; skips where there is no compiler."""
+def compiled(folder: Path, version: int, source: Path = SOURCE) -> Path:
+    """Binary of the small FMU, or of a source that was made of its; skips where there is no compiler."""
     compiler = shutil.which("gcc") or shutil.which("cc")
     if compiler is None:
         pytest.skip("no C compiler")
     (folder / "fmi3_rest.h").write_text("\n".join(f"DO_NOTHING({name})" for name in _rest_of_fmi3()))
     binary = folder / "small.so"
-    command = [compiler, "-O1", "-shared", "-fPIC", f"-DFMI={version}", f"-I{folder}", str(SOURCE), "-o", str(binary)]
+    command = [compiler, "-O1", "-shared", "-fPIC", f"-DFMI={version}", f"-I{folder}", str(source), "-o", str(binary)]
     subprocess.run(command, check=True)
     return binary
 

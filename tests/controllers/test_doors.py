@@ -55,7 +55,7 @@ def test_where_a_specification_leads(door_of, spec, room):
     assert door_of(spec) == room
 
 
-@pytest.mark.parametrize("spec", ["what.ever", "c", "", "file.txt:C", "http://example.org/c", "c.so/d"])
+@pytest.mark.parametrize("spec", ["what.ever", "c", "", "file-1.txt:C", "http://example.org/c", "c.so/d"])
 def test_what_leads_nowhere(spec):
     """What can be written is named, by every door for itself."""
     with pytest.raises(DoorError) as error:

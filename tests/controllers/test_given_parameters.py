@@ -20,7 +20,7 @@ MISTAKES = (
     ("gain", "much", "'much' is not a number"),
     ("gain", True, "true is not a number"),
     ("gain", math.inf, "inf is not a finite number"),
-    ("gain", 10**400, f"{10**39}... is not a finite number"),
+    ("gain", 10**400, f"{10**19}... (401 characters) is not a finite number"),
     ("gain", 2.5, "2.5 is out of range; 0 to 2 is allowed"),
     ("gain", -1, "-1 is out of range; 0 to 2 is allowed"),
     ("status", 1.5, "1.5 is not a whole number"),

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from pvlvrt_compliance.scenario.events import FrequencyRamp
+from pvlvrt_compliance.scenario.events import FrequencyRamp, Irradiance
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.columns import CHANNELS, PLANT_CHANNELS
 from pvlvrt_compliance.simulation.parameters import parameters_from
-from pvlvrt_compliance.simulation.simulate import simulate
+from pvlvrt_compliance.simulation.simulate import available_power_w, simulate
 from pvlvrt_compliance.waveforms.trip_causes import in_words
 
 SAME_START = ("simulation.settling_s=0.5", "simulation.synchronising_s=0")
@@ -152,3 +152,37 @@ def test_settling_can_be_recorded(opened):
     assert before.end_s + before.dt_s == pytest.approx(0.0, abs=1e-9)
     assert furthest(longer, usual, usual.names) == 0
     assert before["enabled"][0] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("irradiance_w_m2", "events", "expected_kw"),
+    [
+        (1000.0, (), {500.0}),
+        (800.0, (), {411.0}),
+        (200.0, (Irradiance(t_s=0.0, to_w_m2=800.0, ramp_s=0.05),), {105.0, 411.0}),
+    ],
+)
+def test_active_power_that_is_asked_for_is_what_there_is(opened, irradiance_w_m2, events, expected_kw):
+    """All that the array can give (105 kW at 200 W/m2, 411 kW at 800), and at most the nominal power."""
+    scenario = Scenario(sag=Sag(depth=0.0), duration_s=0.1, after_s=0.1, irradiance_w_m2=irradiance_w_m2, events=events)
+    (segment,) = opened("told.py:Told")(scenario, parameters_from(()))
+    asked, available = segment["p_set_w"] / 1e3, segment["p_available_w"] / 1e3
+    for power in (asked[0], asked[-1]):
+        assert min(abs(power - expected) / expected for expected in expected_kw) < 0.03
+    assert np.all(asked == np.minimum(available, 500.0))
+    steady = segment.t_s < scenario.start_s
+    most = available_power_w(scenario, parameters_from(())) / 1e3
+    assert available[steady] == pytest.approx(most, rel=1e-6)
+    last = available_power_w(scenario.model_copy(update={"irradiance_w_m2": 800.0}), parameters_from(())) / 1e3
+    assert not events or available[-1] == pytest.approx(last, rel=1e-6)
+
+
+def test_plant_data_that_a_controller_is_told(opened):
+    """Filter, link and nominal DC voltage (Table 1), as they are set."""
+    scenario = Scenario(sag=Sag(depth=0.0), duration_s=0.1, after_s=0.1)
+    settings = ("plant.filter_inductance_h=0.0002", "plant.dc_link_capacitance_f=0.05")
+    (segment,) = opened("told.py:Told")(scenario, parameters_from(settings))
+    assert segment["l_h"][0] == 0.0002
+    assert segment["r_ohm"][0] == 0.001
+    assert segment["c_f"][0] == 0.05
+    assert segment["v_nominal_v"][0] == pytest.approx(807.4, rel=1e-3)

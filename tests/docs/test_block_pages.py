@@ -10,7 +10,7 @@ import pytest
 from pvlvrt_compliance.simulation.parameters import parameter_names
 from validation.blocks import __main__ as command
 from validation.blocks import numbers, page, svg
-from validation.blocks.parameters import KNOWN, field_of, unit_of
+from validation.blocks.parameters import KNOWN, allowed_of, field_of, unit_of
 from validation.places import DOCS, ROOT
 
 PAGES = page.pages()
@@ -33,6 +33,18 @@ def parameter_rows(path: Path) -> list[tuple[str, str, str]]:
     """Name, default and unit of each line of a page's tables of parameters."""
     parts = (body for kind, _, body in page.MADE.findall(path.read_text("utf-8")) if kind == "parameters")
     return [row for body in parts for row in ROW.findall(body)]
+
+
+def test_what_is_allowed_is_said():
+    """Every number has its range in the table, of a list the range of each place."""
+    assert allowed_of("plant.filter_inductance_h") == "1e-07 to 1"
+    assert allowed_of("protection.undervoltage_curve") == "0 to 3600; 0 to 10"
+    assert allowed_of("controller.precision") == ""
+    shown = "".join(path.read_text("utf-8") for path in PAGES)
+    for name in parameter_names():
+        assert f"| {unit_of(name)} | {allowed_of(name)} |" in next(
+            line for line in shown.splitlines() if line.startswith(f"| `{name}` |")
+        )
 
 
 def value_of(cell: str) -> object:

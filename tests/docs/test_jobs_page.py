@@ -50,3 +50,12 @@ def test_gitlab():
     line = Template(own(GITLAB["part"]["script"]))
     parts = [line.substitute(CI_NODE_INDEX=n, CI_NODE_TOTAL=count) for n in range(1, count + 1)]
     check(parts, own(GITLAB["whole"]["script"]))
+
+
+def test_nothing_is_installed_from_an_index():
+    """The package is on none: each job installs its wheel, as the page says where that is from."""
+    jobs = [step.get("run", "") for job in GITHUB["jobs"].values() for step in job["steps"]]
+    jobs += [line for job in GITLAB.values() for line in job["script"]]
+    installed = [line for line in jobs if "install" in line]
+    assert installed == ["pip install wheels/*.whl"] * 4
+    assert "--wheel-dir wheels" in PAGE

@@ -78,3 +78,12 @@ def test_what_cannot_be_measured():
         step_response(T_S, np.where(T_S > 0.5, np.nan, 0), 0.0, 0.0, 1.0, TEN)
     with pytest.raises(MeasurementError, match="no width"):
         step_response(T_S, T_S, 0.0, 0.0, 1.0, Tolerance(0, 0))
+
+
+@pytest.mark.parametrize("after", [1, 4095, 4096, 9000])
+def test_a_level_that_is_reached_late(after):
+    """It is found wherever it is, and none that is never reached."""
+    t_s = 1e-4 * np.arange(10_000)
+    found = step_response(t_s, np.where(t_s < t_s[after] - 1e-9, 0.0, 0.95), 0.0, 0.0, 1.0, TEN)
+    assert found.response_s == pytest.approx(t_s[after - 1] + 0.9 / 0.95 * 1e-4, abs=1e-9)
+    assert step_response(t_s, np.full(len(t_s), 0.5), 0.0, 0.0, 1.0, TEN).response_s is None

@@ -2,7 +2,10 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from draws import draws
 from pvlvrt_compliance.measure.swing import swing, to_and_fro, tone
 
 STEP_S = 1e-4
@@ -76,3 +79,15 @@ def test_the_middle_of_a_swing_lies_between_its_extremes():
     t_s, step_s = sampled(1.0)
     found = swing(t_s, 3 + 2 * t_s + np.sin(2 * np.pi * 5 * t_s), step_s)
     assert found.ends == pytest.approx((3.0, 5.0), abs=0.5)
+
+
+@given(
+    st.integers(0, 2**32 - 1), st.sampled_from([1, 2, 255, 256, 257, 512, 1500, 9000]), st.sampled_from([-1, 0, 1, 3])
+)
+@draws(60)
+def test_the_largest_rise_and_fall_are_those_between_any_two_samples(seed, count, digits):
+    """However they lie, in one piece of the series or in several, and where many samples are equal."""
+    x = np.round(np.random.default_rng(seed).normal(size=count).cumsum(), digits)
+    rise, fall = (x - np.minimum.accumulate(x)).max(), (np.maximum.accumulate(x) - x).max()
+    assert to_and_fro(x) == min(rise, fall)
+    assert to_and_fro(np.full(count, x[0])) == 0.0

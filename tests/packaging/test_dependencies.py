@@ -42,13 +42,14 @@ def _brought(names):
         if name not in found:
             found.add(name)
             asked = map(Requirement, requires(name) or ())
-            left += [one.name.lower() for one in asked if one.marker is None or one.marker.evaluate({"extra": ""})]
+            now = (one for one in asked if one.marker is None or one.marker.evaluate({"extra": ""}))
+            left += [one.name.lower().replace("_", "-") for one in now]
     return found
 
 
 def test_what_is_imported_is_brought_or_its_extra_named():
     """What is no dependency is of an extra; the file that imports it says which where it is not there."""
-    of = {name: {one.lower() for one in found} for name, found in packages_distributions().items()}
+    of = {name: {one.lower().replace("_", "-") for one in found} for name, found in packages_distributions().items()}
     own = sys.stdlib_module_names | {_PACKAGE.name} | _OUTSIDE
     brought, wanted = _brought(always()), {extra: _brought(names) for extra, names in extras().items()}
     for path in _PACKAGE.rglob("*.py"):

@@ -61,6 +61,7 @@ def open_loop() -> Callable[..., tuple[np.ndarray, np.ndarray]]:
             trip=NO_TRIP,
             t_trip=0.0,
             closed=True,
+            blocked=False,
             mean=PeriodMean(u=0j, i=i0),
         )
         deaf = p._replace(protection=p.protection._replace(i_max=1e12, v_dc_max=1e12))

@@ -17,17 +17,6 @@ def test_the_bridge_loses_no_power(in_python, m, i, v_dc):
     assert bridge.i_dc * v_dc == pytest.approx((bridge.u * i.conjugate()).real, rel=1e-9, abs=1e-6)
 
 
-@given(vectors, st.floats(600, 1100))
-def test_diodes_return_energy_to_the_link(in_python, i, v_dc):
-    """A blocked bridge opposes the current and charges the link with the power that the current brings."""
-    bridge = in_python(inverter.freewheeling)(i, v_dc)
-    power = (bridge.u * i.conjugate()).real
-    assert power <= 0
-    assert bridge.i_dc * v_dc == pytest.approx(power, rel=1e-9, abs=1e-6)
-    if abs(i) > 1e-3:
-        assert abs(bridge.u) == pytest.approx(math.sqrt(6) / math.pi * v_dc)
-
-
 @given(st.complex_numbers(max_magnitude=1e3))
 def test_the_linear_range_ends_at_the_link_over_root_two(in_python, m):
     """However large the modulating signal, |u_inv| <= v_DC / sqrt(2)."""

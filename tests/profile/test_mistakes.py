@@ -222,6 +222,9 @@ MISTAKES = {
         "include = [\n'spain-q-curve',\n'nowhere', # <-\n]", "include[1]", "no profile", BARE
     ),
     "misspelt include": Mistake("include = ['iec61400'] # <-", "include[0]", '"iec61400-21"', BARE),
+    "include of any file": Mistake(
+        "include = ['/etc/passwd'] # <-", "include[0]", "'/etc/passwd' must be the name of a profile, or the path", BARE
+    ),
     "include of itself": Mistake("include = ['mine'] # <-", "include[0]", "without end", BARE),
     "include of a text": Mistake("include = 'iec61400-21' # <-", "include", "must be a list", BARE),
     "drop of nothing": Mistake("drop_tests = ['U5*'] # <-", "drop_tests[0]", "drops no test"),

@@ -117,7 +117,7 @@ def entry_point(monkeypatch):
         monkeypatch.setitem(sys.modules, module.__name__, module)
         entry = importlib.metadata.EntryPoint("company", f"{module.__name__}:announced", ENTRY_POINT_GROUP)
         monkeypatch.setattr(
-            "pvlvrt_compliance.data.search_path.entry_points", lambda group: [entry] * (group == ENTRY_POINT_GROUP)
+            "pvlvrt_compliance.data.search_path.announced", lambda group: [entry] * (group == ENTRY_POINT_GROUP)
         )
 
     return announce

@@ -15,10 +15,10 @@ from pvlvrt_compliance.checks.quality import harmonics
 from pvlvrt_compliance.evidence import cursors as set_cursors
 from pvlvrt_compliance.evidence import evidence, excursions, series
 from pvlvrt_compliance.evidence.record import Record
-from pvlvrt_compliance.measure import summary, swing, windows
+from pvlvrt_compliance.measure import swing, window_sums, windows
 from pvlvrt_compliance.measure.extremes import first_least
 from pvlvrt_compliance.measure.groups import harmonic_subgroups
-from pvlvrt_compliance.measure.power import Power, instantaneous_power, sequence_current
+from pvlvrt_compliance.measure.power import Power, SequenceCurrent, instantaneous_power
 from pvlvrt_compliance.measure.response import step_response
 from pvlvrt_compliance.measure.windows import Span
 from pvlvrt_compliance.units import Nominal
@@ -95,8 +95,13 @@ CHANGES = {
     ),
     "swings count what goes one way only": (own(PAPER, 0.5, 0.15, SECOND), swing, "to_and_fro", np.ptp),
     "the larger of P and Q is the smaller": (WEAK_SAG, oscillation, "first_most", first_least),
-    "reactive power leads": (own(PAPER, 0.5, 0.3), summary, "instantaneous_power", _leading),
-    "the negative sequence counts as the positive": (SINGLE, series, "negative_sequence_current", sequence_current),
+    "reactive power leads": (own(PAPER, 0.5, 0.3), window_sums, "instantaneous_power", _leading),
+    "the negative sequence counts as the positive": (
+        SINGLE,
+        series,
+        "SequenceCurrent",  # which is made of the negative sequence alone there
+        lambda active, reactive: SequenceCurrent(active, -reactive),
+    ),
     "a stretch is settled after 50 ms": (WEAK_SAG, evidence, "settled_window", _settled_early),
     "an envelope goes by the terminals": (
         own("iec61400-21", 0.9, 0.3, **WEAKER),

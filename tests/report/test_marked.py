@@ -11,6 +11,7 @@ from pvlvrt_compliance.report import marked
 from pvlvrt_compliance.report.document.comment import comment
 from pvlvrt_compliance.report.formats import github, markdown
 from pvlvrt_compliance.results import exit_status
+from pvlvrt_compliance.texts import printable
 from told import BROKEN, FAILED, IDLE, KNOWN, PASSED, UNJUDGED, WORSE, run_of, test_of
 
 PARSER = MarkdownIt("commonmark").enable(["table", "strikethrough"])
@@ -39,10 +40,10 @@ def as_read(text):
 @example("![x](https://a.example/b.png) <img src=x onerror=1> </details> `a|b` \\| @team #1 !2 ~bug $x^2$ :smile: GH-1")
 @example("&lt;b&gt; &#64;team user@host.example www.example.org")
 def test_any_text_is_read_as_it_is(text):
-    """White space is one space, what cannot be seen a mark; all else comes out as it went in, and is nothing more."""
+    """White space is one space, what cannot be seen is spelled; all else comes out as it is, and is nothing more."""
     tokens = inline(PARSER.parse(f"a {marked.plain(text)} b"))
     assert {token.type for token in tokens} <= {"text", "text_special"}
-    seen = "".join(each if each.isprintable() else "\ufffd" for each in " ".join(text.split()))
+    seen = " ".join(printable(text, None).split())
     assert as_read(f"a {marked.plain(text)} b").replace(BREAK, "") == f"a {seen} b"
     assert not CALLS.search(as_read(marked.plain(text)))
 

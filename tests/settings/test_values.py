@@ -7,6 +7,8 @@ import pytest
 from pvlvrt_compliance.cli.options import OPTIONS, SETTINGS
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.settings.effective import effective
+from pvlvrt_compliance.settings.reading import Level, Value
+from pvlvrt_compliance.settings.telling import _each
 
 
 def test_every_option_is_a_setting_by_its_name():
@@ -165,3 +167,22 @@ def test_a_controller_counts_from_the_file(hold, project, monkeypatch, spec, fro
     (project / "ctrl.py").touch()
     monkeypatch.chdir("sub")
     assert hold(f'controller = "{spec}"').given == {"controller": from_below}
+
+
+class Counted(dict):
+    """Lines of items, and how often all of them were gone through."""
+
+    times = 0
+
+    def items(self):
+        """All of them."""
+        self.times += 1
+        return super().items()
+
+
+def test_many_items_are_told_in_one_go():
+    """However many items a list has, the lines of all are gone through once, and each is its own."""
+    lines = Counted({f"controller.x{k}={k}": f"a.toml:{k} set" for k in range(50)})
+    value = Value(list(lines), Level.FILE, "a.toml:0", "a.toml:0 set", lines)
+    assert _each(value) == {"each_from": [f"a.toml:{k}" for k in range(50)]}
+    assert lines.times == 1

@@ -5,6 +5,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from pvlvrt_compliance.control.controller import ControllerSignals
 from pvlvrt_compliance.measured import Measured
@@ -16,10 +18,11 @@ from pvlvrt_compliance.simulation.columns import (
     PLANT_CHANNELS,
     RECORDED,
     phases_at,
+    put_phases,
     record_controller,
     record_plant,
 )
-from pvlvrt_compliance.simulation.door.call import put_commands, put_signals
+from pvlvrt_compliance.simulation.door.call import out_of_the_frame, put_commands, put_signals
 from pvlvrt_compliance.simulation.door.controller import record_foreign
 from pvlvrt_compliance.simulation.door.exchange import (
     COMMANDED_M,
@@ -30,8 +33,10 @@ from pvlvrt_compliance.simulation.door.exchange import (
     LATEST_CALL,
     PROGRESSES,
     SIGNALS,
+    SWITCHES,
     TRIP_SEEN,
     FixedSignals,
+    LaterSignals,
 )
 
 PLANT = PlantState(
@@ -43,6 +48,7 @@ PLANT = PlantState(
     trip=3,
     t_trip=0.02,
     closed=True,
+    blocked=False,
     mean=PeriodMean(u=0j, i=0j),
 )
 OBSERVED = Observed(u_ab=390 - 80j, u0_ab=370 + 55j, u_zero=17.0)
@@ -118,11 +124,12 @@ def test_every_signal_stands_in_its_place(in_python):
     m = 0.8 - 0.3j
     in_python(put_signals)(x, 1.25, seen, 17.0, conducting, m, G, 0.5)
     found = by_name(SIGNALS, x)
-    assert [name for name, value in found.items() if math.isnan(value)] == list(FixedSignals._fields)
+    fixed = ["p_set_w", *FixedSignals._fields, *LaterSignals._fields]
+    assert [name for name, value in found.items() if math.isnan(value)] == fixed
     # The paper's signal is 3/4 of one by half the link, phase to its middle, in length: u = m v_DC / 2.
     acting = phases(("m_a", "m_b", "m_c"), 4 / 3 * m)
     powers = [0.5 * 812.0 * acting[f"m_{x}"] * OF_THE_PLANT[f"i_{x}_a"] for x in "abc"]
-    assert {name: found[name] for name in SIGNALS if name not in FixedSignals._fields} == pytest.approx(
+    assert {name: found[name] for name in SIGNALS if name not in fixed} == pytest.approx(
         {
             "time_s": 1.25,
             **phases(("u_a_v", "u_b_v", "u_c_v"), OBSERVED.u_ab, 17.0),
@@ -135,12 +142,16 @@ def test_every_signal_stands_in_its_place(in_python):
 
 
 def test_every_command_stands_in_its_place(in_python):
-    """What modulates, as three signals by half the link, and as three voltages."""
+    """What modulates, as three signals by half the link, and as three voltages; the switches are off."""
     x = np.full(len(COMMANDS), np.nan)
     in_python(put_commands)(x, 0.6 + 0.2j, 800.0)
     modulating = phases(("m_a", "m_b", "m_c"), 4 / 3 * (0.6 + 0.2j))
     volts = {f"u_{name[-1]}_ref_v": 400.0 * value for name, value in modulating.items()}
-    assert by_name(COMMANDS, x) == pytest.approx({**modulating, **volts})
+    switches = dict.fromkeys(SWITCHES, 0.0)
+    # 800 V by the paper's gain and m of 0.6 + 0.2j, as the amplitude of a phase and its angle.
+    size = math.sqrt(2 / 3) * 2 / 3 * 800.0 * math.hypot(0.6, 0.2)
+    frame = {"u_d_ref_v": size, "u_q_ref_v": 0.0, "angle_rad": math.atan2(0.2, 0.6)}
+    assert by_name(COMMANDS, x) == pytest.approx({**modulating, **volts, **switches, **frame})
     assert tuple(in_python(phases_at)(x, COMMANDED_M)) == pytest.approx(tuple(modulating.values()))
     assert tuple(in_python(phases_at)(x, COMMANDED_U)) == pytest.approx(tuple(volts.values()))
 
@@ -148,3 +159,14 @@ def test_every_command_stands_in_its_place(in_python):
 def test_what_is_told_of_a_run_has_a_place_each():
     """No two numbers share one."""
     assert sorted((LATEST_CALL, TRIP_SEEN, IGNORED_AT, IGNORED_STATUS)) == list(range(PROGRESSES))
+
+
+@given(st.floats(-500, 500), st.floats(-500, 500), st.floats(-20, 20))
+def test_voltages_in_a_frame_are_those_of_the_phases(in_python, u_d, u_q, angle):
+    """Phase x has u_d cos(angle - x) - u_q sin(angle - x), x a third of a turn from phase to phase."""
+    x = np.zeros(len(COMMANDS))
+    x[COMMANDS.index("u_d_ref_v")], x[COMMANDS.index("u_q_ref_v")], x[COMMANDS.index("angle_rad")] = u_d, u_q, angle
+    in_python(put_phases)(x, COMMANDED_U, in_python(out_of_the_frame)(x), 0.0)
+    behind = [k * 2 * math.pi / 3 for k in range(3)]
+    expected = [u_d * math.cos(angle - b) - u_q * math.sin(angle - b) for b in behind]
+    assert tuple(in_python(phases_at)(x, COMMANDED_U)) == pytest.approx(expected, abs=1e-9)

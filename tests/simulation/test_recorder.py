@@ -11,8 +11,9 @@ from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import busy_stretches
 from pvlvrt_compliance.simulation.columns import CHANNELS
 from pvlvrt_compliance.simulation.parameters import Parameters
-from pvlvrt_compliance.simulation.recorder import AFTER_S, BEFORE_S, LEAST_RATE_HZ, MOST_ROWS, RecordingPlan, plan_of
+from pvlvrt_compliance.simulation.recorder import RecordingPlan, plan_of
 from pvlvrt_compliance.simulation.simulate import available_power_w, record_of, simulate
+from pvlvrt_compliance.simulation.thinning import AFTER_S, BEFORE_S, LEAST_RATE_HZ, MOST_ROWS
 from pvlvrt_compliance.simulation.translate import nominal_of
 
 T_REG = 40.9568e-6
@@ -168,3 +169,15 @@ def test_rows_become_columns(rows):
     for number, name in enumerate(CHANNELS):
         assert segment[name].tolist() == samples[:, number].tolist()
         assert segment[name].flags.c_contiguous
+
+
+def test_columns_that_are_there_stay_where_they_are():
+    """A record whose channels were written in one piece each is not written a second time."""
+    samples = np.arange(5.0 * len(CHANNELS)).reshape(len(CHANNELS), 5).T
+    first, second = record_of(
+        samples, RecordingPlan(np.array([-2, 0, 3]), np.array([1, 1])), 1e-4
+    ).with_settling.segments
+    for number, name in enumerate(CHANNELS):
+        assert [*first[name], *second[name]] == samples[:, number].tolist()
+        assert np.shares_memory(first[name], samples)
+        assert second[name].flags.c_contiguous

@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 
 from pvlvrt_compliance.measure.power import instantaneous_power
-from pvlvrt_compliance.plant.protection import DC_OVERVOLTAGE, FREQUENCY, NO_TRIP, OVERCURRENT, UNDERVOLTAGE
+from pvlvrt_compliance.plant.protection import (
+    BY_CONTROLLER,
+    DC_OVERVOLTAGE,
+    FREQUENCY,
+    NO_TRIP,
+    OVERCURRENT,
+    UNDERVOLTAGE,
+)
 from pvlvrt_compliance.scenario.events import FrequencyRamp
 from pvlvrt_compliance.simulation.loop import is_finite
 from pvlvrt_compliance.waveforms import trip_causes
@@ -107,9 +114,10 @@ def test_the_record_says_what_opened_the_breaker(simulated, fidelity, settings, 
 
 def test_every_code_of_the_relays_has_words():
     """The words of the record and the codes of the plant are of one length and order."""
-    codes = (NO_TRIP, OVERCURRENT, DC_OVERVOLTAGE, UNDERVOLTAGE, FREQUENCY)
+    codes = (NO_TRIP, OVERCURRENT, DC_OVERVOLTAGE, UNDERVOLTAGE, FREQUENCY, BY_CONTROLLER)
     assert codes == tuple(range(len(TRIP_CAUSES)))
-    assert [in_words(code).split()[0] for code in codes] == ["none", "over-current", "DC", "under-voltage", "frequency"]
+    first = [in_words(code).split()[0] for code in codes]
+    assert first == ["none", "over-current", "DC", "under-voltage", "frequency", "controller"]
     assert DC_OVERVOLTAGE == trip_causes.DC_OVERVOLTAGE
     assert in_words(77) == "cause 77"
 

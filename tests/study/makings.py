@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 from pvlvrt_compliance.evidence.evidence import Evidence
@@ -33,6 +34,22 @@ def killed(evidence: Evidence, result: TestResult, *, tests: dict[str, str]) -> 
         sys.stderr.flush()
         os.kill(os.getpid(), signal.SIGKILL)
     return os.getpid()
+
+
+def stopped(evidence: Evidence, result: TestResult, *, tests: list[str]) -> None:
+    """Stop the process that makes it of some tests, as nobody does who is to have it go on."""
+    del evidence
+    if result.id in tests:
+        os.kill(os.getpid(), signal.SIGSTOP)
+
+
+def babbling(evidence: Evidence, result: TestResult, *, tests: list[str]) -> None:
+    """Write into all pipes of this process what nobody expects there, as another program of its user can."""
+    del evidence
+    for file in Path("/proc/self/fd").iterdir() if result.id in tests else ():
+        with suppress(OSError):
+            if "pipe" in os.readlink(file):  # noqa: PTH115 - a pipe is no path
+                os.write(int(file.name), b"what nobody has asked for\n" * 9)
 
 
 def failing(evidence: Evidence, result: TestResult) -> None:

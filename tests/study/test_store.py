@@ -215,7 +215,13 @@ def test_a_journal_moves_nothing_outside(begun, name):
     assert_whole(begun, "first")
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", '{"into": 3, "withdrawn": [], "placed": []}', '{"into": ""}'])
+ENDLESS = ("[" * 100_000, "9" * 5000)
+"""Deeper and longer than Python reads JSON."""
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{", "[]", '{"into": 3, "withdrawn": [], "placed": []}', '{"into": ""}', *ENDLESS]
+)
 def test_a_journal_that_is_none(begun, text):
     """Garbage in a staging folder is cleared away with it."""
     staging = begun / ".unfinished-theirs"
@@ -223,6 +229,14 @@ def test_a_journal_that_is_none(begun, text):
     (staging / "journal.json").write_text(text)
     OutputFolder(str(begun)).discard()
     assert not staging.exists()
+
+
+@pytest.mark.parametrize("text", ENDLESS)
+def test_results_of_another_that_cannot_be_read(begun, text):
+    """What lies there under the name is no results, and the next run takes its place."""
+    (begun / RESULTS).write_text(text)
+    small_runs.stage(begun, "second").finish()
+    assert_whole(begun, "second")
 
 
 @pytest.mark.parametrize("name", [REPORT, JUNIT, RESULTS])
@@ -290,3 +304,11 @@ def test_what_is_written_on_request_goes_with_its_run(tmp_path, text, name):
     small_runs.stage(tmp_path, "second").finish()
     assert small_runs.ids(tmp_path)[RESULTS] == ID["second"]
     assert (tmp_path / name).exists() is (text.format("") == text)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes in folders")
+def test_a_pipe_in_place_of_the_results(tmp_path):
+    """Nobody waits for what it may say: the run is put in its place."""
+    os.mkfifo(tmp_path / RESULTS)
+    small_runs.stage(tmp_path, "second").finish()
+    assert_whole(tmp_path, "second")

@@ -158,13 +158,13 @@ def bleeder_current(v_dc: float, G_bleed: float) -> float:
         Line("plant/plant.py", "        G_bleed=p.G_bleed,\n", after=r"        t_breaker=p\.t_breaker,\n"),
         Change(
             "plant/plant.py",
-            r"\(i_pv - bridge\(m, i_mid, v_mid, blocked\)\.i_dc\)",
-            "(i_pv - bridge(m, i_mid, v_mid, blocked).i_dc - bleeder_current(v_mid, p.G_bleed))",
+            r"\(i_pv - modulated\(m, i_mid, v_mid\)\.i_dc\)",
+            "(i_pv - modulated(m, i_mid, v_mid).i_dc - bleeder_current(v_mid, p.G_bleed))",
         ),
         Line(
             "plant/parameters.py",
-            "    bleeder_conductance_s: NotNegative = 0.0\n",
-            after=r"    dc_link_capacitance_f: Positive = .*\n",
+            "    bleeder_conductance_s: FiniteFloat = Field(default=0.0, ge=0, le=10)\n",
+            after=r"    dc_link_capacitance_f: FiniteFloat = .*\n",
         ),
         Line(
             "simulation/translate.py",

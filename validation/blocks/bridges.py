@@ -2,7 +2,7 @@
 
 import cmath
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from pvlvrt_compliance.kernel import in_python
 from pvlvrt_compliance.plant import line
 from pvlvrt_compliance.plant.carrier import Pulses, duties, pulses_of
-from pvlvrt_compliance.plant.inverter import K_PWM, freewheeling, limit_modulation
+from pvlvrt_compliance.plant.diode_bridge import blocked_voltage
+from pvlvrt_compliance.plant.inverter import K_PWM, limit_modulation, modulated
 from pvlvrt_compliance.plant.line import line_step, pcc_voltage
-from pvlvrt_compliance.plant.plant import plant_step
+from pvlvrt_compliance.plant.plant import blocked_plant_step
 from pvlvrt_compliance.plant.protection import OVERCURRENT
 from pvlvrt_compliance.plant.pv_array import (
     current_at,
@@ -21,7 +22,7 @@ from pvlvrt_compliance.plant.pv_array import (
 from pvlvrt_compliance.plant.switched_bridge import DeviceParams, PeriodMean, switched_flow
 from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.translate import device_params, nominal_of
-from pvlvrt_compliance.vectors import phases_of
+from pvlvrt_compliance.vectors import Phases, phases_of, vector_of
 from validation.blocks.power import SCENARIO, nominal_plant, standing
 from validation.blocks.svg import Axes, Figure, curve
 from validation.simulator import loops
@@ -33,36 +34,63 @@ _M = 0.85  # length of a modulating signal that is about that of normal operatio
 
 def after_trip(seconds: float) -> tuple[NDArray[np.float64], NDArray[np.complex128], NDArray[np.bool_]]:
     """Time (s), current (A) and whether the breaker is closed, from an overcurrent trip in normal operation on."""
-    p, step = nominal_plant(), in_python(plant_step)
+    p, step = nominal_plant(), in_python(blocked_plant_step)
     u = p.protection.u_nom * cmath.exp(0.5j)  # at the angle of an instant at which the phases differ
     i0 = 500e3 / p.protection.u_nom**2 * u
     x, i, closed = standing(voltage_at_power(500e3, 1000.0, p.pv), i0, OVERCURRENT, True), [], []
     for n in range(round(seconds / p.T_S)):
         i.append(x.i)
         closed.append(x.closed)
-        x = step(x, 0j, u * cmath.exp(1j * W * (n + 0.5) * p.T_S), 0.0, p)
+        x = step(x, u * cmath.exp(1j * W * (n + 0.5) * p.T_S), 0.0, p)
     return p.T_S * np.arange(len(i), dtype=np.float64), np.array(i), np.array(closed)
 
 
 def inverter_rows() -> tuple[Row, ...]:
-    """Gains of the modulated and of the blocked bridge."""
-    p = nominal_plant()
-    v = voltage_at_power(500e3, 1000.0, p.pv)
-    size = abs(in_python(freewheeling)(1 + 0j, v).u)
-    t, i, closed = after_trip(0.003)
-    # The current opposes the source as well, which turns by a few degrees only in this time.
-    end = Parameters().plant.filter_inductance_h * abs(i[0]) / (size + p.protection.u_nom)
+    """Gain of the modulated bridge at its end."""
+    longest = K_PWM * V_DC * abs(in_python(limit_modulation)(9 + 0j))
     return (
-        shown(
-            "voltage at the end of the linear range, 807.4 V",
-            K_PWM * V_DC * abs(in_python(limit_modulation)(9 + 0j)),
-            "V",
+        shown("voltage at the end of the linear range, 807.4 V", longest, "V"),
+        Row("the same by v_DC", longest / V_DC, 1 / math.sqrt(2), 1e-12),
+    )
+
+
+def blocked_rows() -> tuple[Row, ...]:
+    """What diodes put against a current, and for how long."""
+    p = nominal_plant()
+    t, i, closed = after_trip(0.003)
+    ended = float(t[i == 0][0])
+    return (
+        *(
+            Row(f"voltage against a current of phase a that returns by {name}, by v_DC", found, expected, 1e-12)
+            for name, found, expected in _against()
         ),
-        Row("voltage of the diodes by v_DC", size / v, math.sqrt(6) / math.pi, 1e-12),
-        Row("nominal current of a blocked bridge ends after", 1e3 * float(t[i == 0][0]), 1e3 * end, 0.01, "ms"),
-        Row("the breaker opens after", 1e3 * float(t[~closed][0]), 1e3 * end, 0.01, "ms"),
+        shown("nominal current of a blocked bridge ends after", 1e3 * ended, "ms"),
+        Row("the breaker opens after", 1e3 * float(t[~closed][0]), 1e3 * ended, 0.01, "ms"),
         shown("least v_DC at which diodes let no current build up", math.sqrt(2) * p.protection.u_nom, "V"),
     )
+
+
+def _against() -> Iterator[tuple[str, float, float]]:
+    """What phase a's current returns by, and the voltage of the diodes against it by v_DC: found, expected (-)."""
+    for name, back, share in (
+        ("both others", Phases(2.0, -1.0, -1.0), 2 / 3),
+        ("one other", Phases(1.0, -1.0, 0.0), 0.5),
+    ):
+        u = in_python(blocked_voltage)(in_python(vector_of)(back), 0j, V_DC, 0.0)
+        yield name, -in_python(phases_of)(u).a / V_DC, share
+
+
+def inverter_figure() -> Figure:
+    """Voltage of the bridge by the modulating signal, up to the end of its range and beyond."""
+    sizes = np.linspace(0, 1.5, 61)
+    out = np.array([abs(in_python(modulated)(in_python(limit_modulation)(complex(m)), 0j, V_DC).u) for m in sizes])
+    curves = (
+        curve("bridge", sizes, out),
+        curve("2/3 v_DC |m|", sizes, K_PWM * V_DC * sizes, dashed=True, like=0),
+        curve("v_DC/√2", [0.0, 1.5], [V_DC / math.sqrt(2)] * 2, dashed=True),
+    )
+    title = "Length of the inverter's voltage at 807.4 V: in proportion to m, up to the end of the linear range"
+    return Figure("plant/figures/inverter.svg", title, (Axes("|m|", "V", curves),))
 
 
 def trip_figure() -> Figure:
@@ -230,8 +258,9 @@ def line_figure() -> Figure:
 
 ROWS: dict[str, Callable[[], tuple[Row, ...]]] = {
     "inverter": inverter_rows,
+    "blocked": blocked_rows,
     "pwm": pwm_rows,
     "bridge": bridge_rows,
     "line": line_rows,
 }
-FIGURES: tuple[Callable[[], Figure], ...] = (trip_figure, pwm_figure, line_figure)
+FIGURES: tuple[Callable[[], Figure], ...] = (inverter_figure, trip_figure, pwm_figure, line_figure)

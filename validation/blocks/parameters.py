@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Any, Literal, NamedTuple, get_args, get_origin
 
+from pvlvrt_compliance.parameter_group import ranges_of
 from pvlvrt_compliance.simulation.parameters import Parameters
 
 
@@ -27,6 +28,12 @@ KNOWN = {
     "simulation.record_settling": Known("", _OWN),
     "simulation.synchronising_s": Known("", _OWN),
     "simulation.time_limit_s": Known("", _OWN),
+    "simulation.opening_limit_s": Known("", _OWN),
+    "simulation.memory_limit_mb": Known("", _OWN),
+    "simulation.output_limit_mb": Known("", _OWN),
+    "simulation.files_limit_mb": Known("", _OWN),
+    "simulation.files_limit": Known("", _OWN, "-"),
+    "simulation.processes_limit": Known("", _OWN, "-"),
     "plant.apparent_power_kva": Known("S_nom", "below eq (8)"),
     "plant.phase_voltage_v": Known("u_gnom", "Table 2"),
     "plant.dc_link_capacitance_f": Known("C", "Table 2"),
@@ -46,6 +53,8 @@ KNOWN = {
     "protection.frequency_min_hz": Known("w_min/2π", _OWN),
     "protection.frequency_max_hz": Known("w_max/2π", _OWN),
     "protection.frequency_delay_s": Known("t_frequency", _OWN),
+    "protection.undervoltage_relay": Known("", _OWN),
+    "protection.frequency_relay": Known("", _OWN),
     "sensors.adc_bits": Known("", _IDEAL, "bit"),
     "sensors.voltage_range_v": Known("low, high", _OWN),
     "sensors.current_range_a": Known("low, high", _OWN),
@@ -94,12 +103,13 @@ KNOWN = {
     "controller.mppt_voltage_min_v": Known("v_min", _OWN),
     "controller.mppt_voltage_max_v": Known("v_max", _OWN),
     "controller.precision": Known("", _OWN),
+    "controller.hold": Known("", _OWN),
     "controller.computation_delay_samples": Known("computation", "section 6"),
     "controller.grid_voltage_feedforward": Known("feedforward", "the paper names none"),
 }
 _UNITS = {
-    "us": "µs", "s": "s", "kva": "kVA", "v": "V", "a": "A", "f": "F", "h": "H", "ohm": "Ω", "mj": "mJ", "pu": "pu",
-    "hz": "Hz", "samples": "samples", "rad_s": "rad/s", "w_per_v": "W/V", "w_per_vs": "W/(V s)",
+    "us": "µs", "s": "s", "kva": "kVA", "v": "V", "a": "A", "f": "F", "h": "H", "ohm": "Ω", "mj": "mJ", "mb": "MB",
+    "pu": "pu", "hz": "Hz", "samples": "samples", "rad_s": "rad/s", "w_per_v": "W/V", "w_per_vs": "W/(V s)",
 }  # fmt: skip
 
 
@@ -138,15 +148,21 @@ def meaning_of(name: str) -> str:
     return re.sub(r"[;,] not in the paper", "", field.description or "")
 
 
+def allowed_of(name: str) -> str:
+    """Range of a number, of a list that of each of its places; a word or a switch has none."""
+    return "; ".join(f"{low:g} to {high:g}" for low, high in ranges_of(field_of(name)))
+
+
 def row(name: str) -> str:
     """Line of a table."""
     known = KNOWN[name]
-    cells = (f"`{name}`", known.symbol, said(field_of(name).default), unit_of(name), meaning_of(name), known.source)
+    default, allowed = said(field_of(name).default), allowed_of(name)
+    cells = (f"`{name}`", known.symbol, default, unit_of(name), allowed, meaning_of(name), known.source)
     return f"| {' | '.join(cells)} |"
 
 
 def table(names: Iterable[str]) -> Iterator[str]:
     """Lines of a table; names are those of ``--set``."""
-    yield "| `--set` | symbol | default | unit | what it is | default from |"
-    yield "|---|---|---|---|---|---|"
+    yield "| `--set` | symbol | default | unit | allowed | what it is | default from |"
+    yield "|---|---|---|---|---|---|---|"
     yield from map(row, names)

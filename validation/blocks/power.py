@@ -51,6 +51,7 @@ def standing(v_dc: float, i: complex, trip: int, closed: bool) -> PlantState:
         trip=trip,
         t_trip=0.0,
         closed=closed,
+        blocked=False,
         mean=PeriodMean(u=0j, i=i),
     )
 

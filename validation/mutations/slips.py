@@ -211,5 +211,6 @@ def advance_or_trip(
         trip=UNDERVOLTAGE,
         t_trip=0.0,
         closed=after.closed,
+        blocked=after.blocked,
         mean=after.mean,
     )

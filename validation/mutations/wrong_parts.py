@@ -7,7 +7,6 @@ from typing import Any
 from pvlvrt_compliance.control.lvrt import LvrtOrder, LvrtParams, lvrt_step
 from pvlvrt_compliance.plant.grid import Source
 from pvlvrt_compliance.plant.plant import PlantParams, PlantState, PlantTables, advance, plant_step
-from pvlvrt_compliance.plant.protection import NO_TRIP, UNDERVOLTAGE
 
 
 def no_reactive_support(u_pos: complex, u_neg: complex, p: LvrtParams) -> LvrtOrder:
@@ -26,9 +25,10 @@ def bridge_blocked(x: PlantState, m: complex, e: complex, u_min: float, p: Plant
         x_pv=after.x_pv,
         i_pv=after.i_pv,
         relay=after.relay,
-        trip=UNDERVOLTAGE if after.trip == NO_TRIP and after.relay.t_low > 0 else after.trip,
-        t_trip=0.0,
-        closed=True,
+        trip=after.trip,
+        t_trip=after.t_trip,
+        closed=after.closed,
+        blocked=after.blocked or after.relay.t_low > 0,
         mean=after.mean,
     )
 
@@ -47,6 +47,7 @@ def not_a_number(
         trip=after.trip,
         t_trip=after.t_trip,
         closed=after.closed,
+        blocked=after.blocked,
         mean=after.mean,
     )
 

@@ -10,6 +10,7 @@ from typing import Any
 from validation.command import MissingProgramError, Outcome, run
 from validation.places import DOCS
 from validation.simulator import (
+    blocked_circuit,
     blocks,
     circuit,
     closed_forms,
@@ -32,6 +33,7 @@ def sections() -> tuple[Section, ...]:
         *blocks.sections(),
         circuit.section(),
         switched_circuit.section(),
+        blocked_circuit.section(),
         integrator.section(),
         photovoltaics.section(),
         invariants.section(),

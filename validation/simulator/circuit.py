@@ -197,10 +197,11 @@ def aligned(scenario: Scenario, samples: Segment, theirs: NDArray[np.float64]) -
     """Record and ngspice's solution at the controller's samples."""
     t = samples.t_s[1:] - samples.t_s[1]
     ours = np.array([samples[name][1:] for name in ("i_a_a", "i_b_a", "i_c_a", "v_dc_v")])
-    return Compared(t=t - (scenario.start_s - samples.t_s[1]), ours=ours, theirs=_at(t, theirs))
+    return Compared(t=t - (scenario.start_s - samples.t_s[1]), ours=ours, theirs=at(t, theirs))
 
 
-def _at(t: NDArray[np.float64], solution: NDArray[np.float64]) -> NDArray[np.float64]:
+def at(t: NDArray[np.float64], solution: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Ngspice's solution at instants (s)."""
     return np.array([np.interp(t, solution[0], x) for x in solution[1:]])
 
 

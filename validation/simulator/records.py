@@ -22,7 +22,7 @@ NOMINAL = Nominal()
 
 NO_TRIPS: dict[str, Any] = {
     "overcurrent_pu": 1e3,
-    "dc_overvoltage_v": 1e6,
+    "dc_overvoltage_v": 1e5,
     "undervoltage_curve": ((0.0, 0.0),),
     "frequency_delay_s": 1e3,
 }

@@ -6,6 +6,7 @@ import typer
 
 from pvlvrt_compliance.cli.options import takes
 from pvlvrt_compliance.cli.options.files import OPTIONS as OF_SETTINGS
+from pvlvrt_compliance.cli.telling import say
 
 _SETTLED = ("baseline", "output")
 """Settings that say where the files are."""
@@ -68,5 +69,5 @@ def update(
         except OSError as error:
             raise unwritable(f"{done.file}: cannot be written ({error.strerror})", error) from None
     for line in done.said:
-        print(line)
+        say(line)
     return int(check and done.is_changed)

@@ -6,6 +6,8 @@ from typing import Any
 
 import typer
 
+from pvlvrt_compliance.texts import one_line
+
 _VALUES = "pvlvrt_compliance.cli.completion.values"
 
 Candidates = list[tuple[str, str]]
@@ -31,4 +33,4 @@ def completer(name: str) -> Callable[[typer.Context, str], Candidates]:
 
 def _one_line(text: str) -> str:
     """A text that neither ends the line of a shell's list nor is read as markup by typer."""
-    return " ".join(text.split()).replace("[", "(").replace("]", ")")
+    return one_line(text).replace("[", "(").replace("]", ")")

@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from pvlvrt_compliance.cli.completion.scripts import SHELLS, script_for
+from pvlvrt_compliance.cli.telling import hand_over
 
 
 def completion(
@@ -22,4 +23,4 @@ def completion(
 
     Example, in ~/.bashrc: eval "$(pvlvrt-check completion bash)"
     """
-    print(script_for(shell), end="")
+    hand_over(script_for(shell))

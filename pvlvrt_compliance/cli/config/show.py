@@ -7,7 +7,7 @@ import typer
 
 from pvlvrt_compliance.cli.options import takes_options
 from pvlvrt_compliance.cli.options.files import OPTIONS as OF_FILES
-from pvlvrt_compliance.texts import all_printable
+from pvlvrt_compliance.cli.telling import say, say_json
 
 _HELP = """
 Show every setting that is not at its default, and where it comes from.
@@ -25,9 +25,9 @@ def show(
     from pvlvrt_compliance.cli.settled import of_options
     from pvlvrt_compliance.settings.telling import told
 
-    holds = all_printable(told(of_options(given)))
+    holds = told(of_options(given))
     if list_json:
-        print(json.dumps(holds, indent=2, ensure_ascii=False))
+        say_json(holds, ensure_ascii=False)
     else:
         _print(holds)
 
@@ -50,7 +50,7 @@ def _print(holds: dict[str, Any]) -> None:
     where = f"no file of settings: {holds['why_not']}" if file is None else f"file of settings: {file}"
     rest = "everything else is at its default" if holds["values"] else "everything is at its default"
     for line in (f"{where}; {rest}", *holds["put_aside"], *holds["warnings"]):
-        print(line)
+        say(line)
 
 
 def _written(value: Any) -> str:

@@ -1,5 +1,7 @@
 """`pvlvrt-check controllers header`."""
 
+from pvlvrt_compliance.cli.telling import hand_over
+
 
 def header() -> None:
     """Print the C header of the IEEE/CIGRE DLL interface (CIGRE TB 958), for controllers in C or C++.
@@ -8,4 +10,4 @@ def header() -> None:
     """
     from pvlvrt_compliance.controllers.library import HEADER
 
-    print(HEADER.read_text("utf-8"), end="")
+    hand_over(HEADER.read_text("utf-8"))

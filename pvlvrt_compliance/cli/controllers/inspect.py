@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from pvlvrt_compliance.cli.telling import say, say_json
+
 if TYPE_CHECKING:
     from pvlvrt_compliance.controllers.description import ParameterInfo, Port, Value
     from pvlvrt_compliance.controllers.facts import Facts
@@ -34,13 +36,11 @@ def inspect(
 
     given, others = own_parameters(assignments or ())
     parameters = parameters_from(others)
-    found = facts_of(ForeignSimulator(spec, given, mapping), parameters)
+    found = facts_of(ForeignSimulator(spec, given, mapping, parameters=parameters), parameters)
     if json:
-        from json import dumps
-
-        print(dumps(found.to_json(), indent=2))
+        say_json(found.to_json())
         return
-    print("\n".join(_words(found)))
+    say("\n".join(_words(found)))
 
 
 def _words(found: "Facts") -> Iterator[str]:

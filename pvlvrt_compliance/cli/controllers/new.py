@@ -1,12 +1,12 @@
 """`pvlvrt-check controllers new`."""
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from pvlvrt_compliance.cli.completion.asking import completer
+from pvlvrt_compliance.cli.telling import say, say_aside
 from pvlvrt_compliance.cli.writing import write_new
 from pvlvrt_compliance.controllers.projects import KINDS, project
 from pvlvrt_compliance.errors import UsageError, did_you_mean
@@ -41,13 +41,13 @@ def new(
     _refuse_existing(files)
     write_new(files, with_folders=True)
     for file in files:
-        print(file)
+        say(str(file))
     if begun.missing:
         missing = Path(folder) / begun.missing
-        print(f"Put {missing.name} into {missing.parent}, or CI cannot install it: README.md says how", file=sys.stderr)
+        say_aside(f"Put {missing.name} into {missing.parent}, or CI cannot install it: README.md says how")
     if begun.pin:
         said = "names no single version, and a new one may change what the gate says: pin it"
-        print(f"--install-from {install_from}: {said}, as {begun.pin} does", file=sys.stderr)
+        say_aside(f"--install-from {install_from}: {said}, as {begun.pin} does")
 
 
 def _refuse_existing(files: dict[Path, bytes]) -> None:

@@ -18,6 +18,9 @@ OPTIONS: dict[str, Option] = {
         "vector_groups",
     ),
     "events": text("--events", "FILE", "What happens besides: a TOML file with [[events]].", _PANEL),
+    "recordings": text(
+        "--recordings", "FOLDER", "Recordings may lie there, too, not only beside the file that names them.", _PANEL
+    ),
     "settings": texts(
         "--set", "NAME=VALUE", "A parameter, repeatable: --set controller.pr_integral_gain=0.2", _PANEL, "parameters"
     ),

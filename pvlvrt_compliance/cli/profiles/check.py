@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from pvlvrt_compliance.cli.completion.asking import completer
+from pvlvrt_compliance.cli.telling import say
 
 
 def check(
@@ -29,11 +30,11 @@ def check(
     demands, tests, doubts = len(list(profile.requirements.by_kind())), len(profile.tests()), profile.unverified()
     left = placeholders(file)
     begun = f", {_count(len(left), 'placeholder')}" if left else ""
-    print(f"ok: {_count(tests, 'test')}, {_count(demands, 'requirement')}, {len(doubts)} not verified{begun}")
+    say(f"ok: {_count(tests, 'test')}, {_count(demands, 'requirement')}, {len(doubts)} not verified{begun}")
     for place in left:
-        print(f"  {place}")
+        say(f"  {place}")
     for doubt in doubts:
-        print(f"  {doubt}")
+        say(f"  {doubt}")
 
 
 def _count(number: int, what: str) -> str:

@@ -4,6 +4,8 @@ from typing import Annotated, Any
 
 import typer
 
+from pvlvrt_compliance.cli.telling import say_json
+
 
 def list_profiles(
     json: Annotated[bool, typer.Option("--json", metavar="", help="For programs.")] = False,
@@ -18,9 +20,7 @@ def list_profiles(
 
     entries = listed_profiles()
     if json:
-        from json import dumps
-
-        print(dumps(entries, indent=2))
+        say_json(entries)
     else:
         from pvlvrt_compliance.cli.tables import Column, print_table
 

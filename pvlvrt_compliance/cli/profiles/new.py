@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from pvlvrt_compliance.cli.telling import hand_over, say
 from pvlvrt_compliance.cli.writing import write_new
 
 
@@ -20,7 +21,7 @@ def new(
 
     begun = begin_profile(name)
     if begun.file is None:
-        print(begun.text, end="")
+        hand_over(begun.text)
         return
     write_new({begun.file: begun.text.encode()})
-    print(begun.file)
+    say(str(begun.file))

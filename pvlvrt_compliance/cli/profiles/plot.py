@@ -6,8 +6,10 @@ from typing import Annotated
 import typer
 
 from pvlvrt_compliance.cli.completion.asking import completer
+from pvlvrt_compliance.cli.telling import say
 from pvlvrt_compliance.cli.writing import write_over
 from pvlvrt_compliance.errors import unwritable
+from pvlvrt_compliance.texts import one_line
 
 
 def plot(
@@ -42,9 +44,9 @@ def plot(
     drawer = drawer_for(output, "--output")
     profile = load_profile(name, INSTALLED_KINDS)
     file = Path(output or f"{profile.id}{drawer.suffix}")
-    content = drawer.render(profile.id, profile.title, panels(profile, wanted))
+    content = drawer.render(profile.id, one_line(profile.title), panels(profile, wanted))
     try:
         write_over(file, content if isinstance(content, bytes) else content.encode())
     except OSError as error:
         raise unwritable(f"--output {file}: cannot be written ({error.strerror})", error) from None
-    print(file)
+    say(str(file))

@@ -1,5 +1,7 @@
 """`pvlvrt-check profiles schema`."""
 
+from pvlvrt_compliance.cli.telling import say_json
+
 
 def schema() -> None:
     """Print the JSON Schema of a profile's file, for editors that complete and check TOML as it is written.
@@ -8,9 +10,7 @@ def schema() -> None:
 
     Example: pvlvrt-check profiles schema > profile.schema.json
     """
-    import json
-
     from pvlvrt_compliance.checks.kinds import INSTALLED_KINDS
     from pvlvrt_compliance.profile.schema import file_schema
 
-    print(json.dumps(file_schema(INSTALLED_KINDS), indent=2))
+    say_json(file_schema(INSTALLED_KINDS))

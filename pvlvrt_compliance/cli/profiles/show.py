@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from pvlvrt_compliance.cli.completion.asking import completer
+from pvlvrt_compliance.cli.telling import say, say_json
 
 
 def show(
@@ -25,9 +26,9 @@ def show(
 
     profile = load_profile(name, INSTALLED_KINDS)
     if json:
-        print(profile.model_dump_json(by_alias=True, exclude_none=True, indent=2))
+        say_json(profile.model_dump(mode="json", by_alias=True, exclude_none=True), ensure_ascii=False)
         return
     from pvlvrt_compliance.cli.tables import terminal_columns
     from pvlvrt_compliance.report.profile_words import render
 
-    print(render(profile, terminal_columns()), end="")
+    say(render(profile, terminal_columns()).removesuffix("\n"))

@@ -2,7 +2,6 @@
 
 import hashlib
 import tempfile
-import zipfile
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any
 
 from pvlvrt_compliance.controllers.description import Description, Value
 from pvlvrt_compliance.controllers.door import Door, DoorCall, DoorError
+from pvlvrt_compliance.controllers.fmu.archive import check_archive, opened, unpack
 from pvlvrt_compliance.controllers.fmu.instance import Fmu, laid_out
 from pvlvrt_compliance.controllers.fmu.model import read_model
 from pvlvrt_compliance.controllers.given_parameters import checked_parameters, seconds
@@ -52,6 +52,7 @@ class FmuDoor(Door):
         self._file = Path(spec)
         if not self._file.is_file():
             raise DoorError(f"there is no file {self._file}")
+        check_archive(self._file)
         self._model = read_model(self._file)
         parameters = self._model.parameters
         holds = {p.info.name: p.holds for p in parameters}
@@ -81,7 +82,7 @@ class FmuDoor(Door):
     def besides(self) -> str:
         """What its binary takes from elsewhere than its archive, as far as that says."""
         folder = self._model.binary.rpartition("/")[0]
-        with zipfile.ZipFile(self._file) as archive:
+        with opened(self._file) as archive:
             beside = {Path(name).name for name in archive.namelist() if name.startswith(f"{folder}/")}
             return besides_of_archive(archive.read(self._model.binary), beside - {Path(self._model.binary).name})
 
@@ -94,7 +95,7 @@ class FmuDoor(Door):
         inputs, outputs = self._mapped(nominal)
         check_commands(outputs)
         folder = self._resources.enter_context(tempfile.TemporaryDirectory(prefix="fmu-", ignore_cleanup_errors=True))
-        _unpack(self._file, Path(folder))
+        unpack(self._file, Path(folder))
         fmu = self._fmu = Fmu(self._model, Path(folder))
         parameters = [(p, self._given[p.info.name]) for p in self._model.parameters if p.info.name in self._given]
         fmu.start(parameters, self._inputs)
@@ -107,6 +108,7 @@ class FmuDoor(Door):
             inputs=Block(self._inputs.memory, inputs.elements),
             outputs=Block(self._outputs.memory, outputs.elements),
             in_volts=outputs.in_volts,
+            in_a_frame=outputs.in_a_frame,
             recorded=outputs.recorded,
             notes=fmu.notes,
         )
@@ -141,11 +143,3 @@ class FmuDoor(Door):
 
 
 DOOR = FmuDoor
-
-
-def _unpack(file: Path, folder: Path) -> None:
-    try:
-        with zipfile.ZipFile(file) as archive:
-            archive.extractall(folder)
-    except (zipfile.BadZipFile, OSError, RuntimeError) as error:
-        raise DoorError(f"{file} cannot be unpacked: {error}") from None

@@ -10,6 +10,7 @@ import numpy as np
 
 from pvlvrt_compliance.controllers.description import ParameterInfo, Value
 from pvlvrt_compliance.controllers.door import DoorError
+from pvlvrt_compliance.controllers.fmu.archive import opened
 from pvlvrt_compliance.controllers.given_parameters import UNLIMITED, Range, range_of_type
 from pvlvrt_compliance.simulation.door.blocks import NUMBER_TYPES
 from pvlvrt_compliance.simulation.door.ports import INT8, INT16, INT32, REAL32, REAL64, UINT8, UINT16, UINT32
@@ -168,7 +169,7 @@ def _binary(file: Path, identifier: str, version: str) -> str:
     """
     library = fmi_library()
     here = library.platform_tuple if version == "3" else library.platform
-    with zipfile.ZipFile(file) as archive:
+    with opened(file) as archive:
         names = [name for name in archive.namelist() if not name.endswith("/")]
     own = f"binaries/{here}/{identifier}{library.sharedLibraryExtension}"
     if own in names:
@@ -183,7 +184,7 @@ def _clock_intervals(file: Path) -> list[float]:
     """Intervals (s) of FMI 3's clocks, which the library does not read."""
     from lxml import etree
 
-    with zipfile.ZipFile(file) as archive, archive.open("modelDescription.xml") as stream:
+    with opened(file) as archive, archive.open("modelDescription.xml") as stream:
         clocks = etree.parse(stream).getroot().findall("ModelVariables/Clock")
     return [float(clock.get("intervalDecimal")) for clock in clocks if clock.get("intervalDecimal")]
 

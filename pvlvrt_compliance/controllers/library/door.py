@@ -110,6 +110,7 @@ class LibraryDoor(Door):
             hold_address=address_of(self._functions.initialize),
             note_address=address_of(note),
             in_volts=outputs.in_volts,
+            in_a_frame=outputs.in_a_frame,
             recorded=outputs.recorded,
             notes=instance.notes,
         )

@@ -21,6 +21,7 @@ from pvlvrt_compliance.controllers.library.layout import (
 )
 from pvlvrt_compliance.controllers.notes import note_once
 from pvlvrt_compliance.simulation.door.blocks import block_memory
+from pvlvrt_compliance.texts import shortened
 
 OK, MESSAGE, ERROR = range(3)
 """What a function of a library returns."""
@@ -197,4 +198,4 @@ def _number_type(kind: int) -> Any:
 def _text_at(address: int | None) -> str:
     if not address:
         return ""
-    return text_of(ctypes.cast(address, ctypes.c_char_p).value)[:_LONGEST]
+    return shortened(text_of(ctypes.cast(address, ctypes.c_char_p).value), _LONGEST)

@@ -22,7 +22,10 @@ from pvlvrt_compliance.errors import listed
 
 Sign = Literal[1, -1]
 Direction = Literal["out_of_inverter", "into_inverter"]
-OutputKind = Literal["modulating", "voltage"]
+OutputKind = Literal["modulating", "voltage", "dq"]
+
+LARGEST_LISTED_BYTES = 256 << 20
+"""Of a listed file (chosen): libraries and tables have less, and each is read to know whether it has changed."""
 
 ENDING = ".mapping.toml"
 """What the name of a mapping file ends in that is found beside its controller."""
@@ -76,6 +79,7 @@ class OutputEntry(_Table):
     unit: str | None = Field(default=None, description="none: as the controller says")
     base: FiniteFloat | None = Field(default=None, gt=0, description="1 pu in the command's unit")
     sign: Sign = 1
+    inverted: bool = Field(default=False, description="of a switch: 1 is off, as of an enable that is tied to block")
 
     @model_validator(mode="before")
     @classmethod
@@ -96,7 +100,7 @@ class MappingFile(_Table):
     outputs: dict[str, OutputEntry] = {}
     bases: Bases = Bases()
     currents: Direction = Field(default="out_of_inverter", description="positive phase currents that name no direction")
-    output_kind: OutputKind | None = Field(default=None, description="of two kinds of commands that are complete")
+    output_kind: OutputKind | None = Field(default=None, description="of several kinds of commands that are complete")
     files: tuple[str, ...] = Field(
         default=(),
         description="all that the controller is made of and reads besides its own file, by names or patterns",
@@ -163,6 +167,9 @@ def _in_folder(folder: Path, name: str) -> list[Path]:
         raise ValueError(f"{outside[0].relative_to(folder)} is a link to a file outside of the folder of the mapping")
     if not files:
         raise ValueError(f"there is no file {name} in the folder of the mapping")
+    large = next((file for file in files if file.stat().st_size > LARGEST_LISTED_BYTES), None)
+    if large is not None:
+        raise ValueError(f"{large.relative_to(folder)} is larger than {LARGEST_LISTED_BYTES >> 20} MiB")
     return files
 
 

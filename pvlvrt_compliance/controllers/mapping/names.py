@@ -11,11 +11,17 @@ PHASES = "abc"
 QUANTITIES: Mapping[str, str] = {
     "time_s": "time",
     **dict.fromkeys(("u_a_v", "u_b_v", "u_c_v", "u_a_ref_v", "u_b_ref_v", "u_c_ref_v", "voltage_nominal_v"), "voltage"),
+    **dict.fromkeys(("u_d_ref_v", "u_q_ref_v"), "voltage"),
+    "angle_rad": "angle",
     **dict.fromkeys(("i_a_a", "i_b_a", "i_c_a"), "current"),
     "v_dc_v": "dc_voltage",
     **dict.fromkeys(("i_dc_a", "i_pv_a"), "dc_current"),
     **dict.fromkeys(("m_a", "m_b", "m_c"), "modulation"),
-    "p_set_w": "active_power",
+    **dict.fromkeys(("p_set_w", "p_available_w"), "active_power"),
+    "v_dc_nominal_v": "dc_voltage",
+    "filter_inductance_h": "inductance",
+    "filter_resistance_ohm": "resistance",
+    "dc_link_capacitance_f": "capacitance",
     "q_set_var": "reactive_power",
     "frequency_nominal_hz": "frequency",
     "apparent_power_nominal_va": "apparent_power",
@@ -30,6 +36,7 @@ class Guess(NamedTuple):
     names: tuple[str, ...] = ()  # a signal or command for every element; empty: nothing is known
     note: str = ""  # why nothing is
     unit: str = ""  # that the name ends in
+    inverted: bool = False  # whether it says the opposite of the command
 
 
 _VOLTS, _AMPS, _M = ("u_{}_v", "i_{}_a", "m_{}")
@@ -67,10 +74,53 @@ _INPUT_WORDS = {
         "nominalfrequency",
     ),
     "apparent_power_nominal_va": ("snom", "sn", "sbase", "srated", "mvabase"),
+    "p_available_w": ("pavail", "pavailable", "pav", "availablepower", "pmpp", "pmax", "pprimary", "poweravailable"),
+    "v_dc_nominal_v": ("vdcnom", "vdcnominal", "vdcn", "vdcbase", "udcnom", "udcn"),
+    "filter_inductance_h": ("lf", "lfilter", "lfilt", "linv", "lchoke"),
+    "filter_resistance_ohm": ("rf", "rfilter", "rfilt", "rinv", "rchoke"),
+    "dc_link_capacitance_f": ("cdc", "cdclink", "clink"),
     "irradiance_w_m2": ("irradiance", "ghi", "gpoa", "irr"),
     "enabled": ("enabled", "enable", "en", "deblock", "release", "run"),
     "connected": ("connected", "breaker", "breakerclosed", "cbclosed", "gridconnected"),
 }
+
+_SWITCH_WORDS = {
+    "trip": (
+        "tripcmd",
+        "tripcommand",
+        "triporder",
+        "tripsignal",
+        "tripcb",
+        "cbtrip",
+        "cbopen",
+        "opencb",
+        "breakertrip",
+    ),
+    "block": (
+        "blocked",
+        "blk",
+        "gateblock",
+        "blockgate",
+        "pulseblock",
+        "blockpulses",
+        "pwmblock",
+        "blockpwm",
+        "inhibit",
+    ),
+    "restart": ("restartcmd", "rearm"),
+}
+_WORKING = (
+    *("enable", "enabled", "en", "pwmenable", "enablepwm", "pwmen", "enpwm", "gateenable", "gateen", "pulseenable"),
+    *("deblock", "deblocked", "unblock", "gateson", "pwmon"),
+)
+"""Outputs that are 1 while the bridge works: the opposite of a block."""
+
+_FRAME_ENDS = ("ref", "cmd", "star", "set", "inv", "conv")
+_FRAME_WORDS = {
+    **{f"u_{axis}_ref_v": tuple(f"{u}{axis}{end}" for u in "uve" for end in _FRAME_ENDS) for axis in "dq"},
+    "angle_rad": ("angleref", "thetaref", "thetacmd", "anglecmd"),
+}
+"""Voltages in a frame, and its angle; an angle alone (`theta`) may be one that is only told."""
 
 _LINE_TO_LINE = "it looks like a line-to-line voltage, which is not offered; take the phase voltages"
 _AMBIGUOUS_INPUTS = {
@@ -110,7 +160,7 @@ def _guess(name: str, width: int, known: Mapping[str, str], ambiguous: Mapping[s
         if width == len(PHASES) and (pattern := _of_three(key, known)):
             return Guess(tuple(pattern), unit=unit)
         if width == 1 and key in known:
-            return Guess((known[key],), unit=unit)
+            return Guess((known[key],), unit=unit, inverted=known is _OUTPUT_NAMES and key in _WORKING)
         if key in ambiguous:
             return Guess(note=ambiguous[key])
     return Guess()
@@ -153,4 +203,9 @@ _INPUT_NAMES = (
     | {word: signal for signal, words in _INPUT_WORDS.items() for word in words}
     | _plain(SIGNALS)
 )
-_OUTPUT_NAMES = _phase_names(_OUTPUT_STEMS) | _plain(COMMANDS)
+_OUTPUT_NAMES = (
+    _phase_names(_OUTPUT_STEMS)
+    | {word: command for command, words in (_SWITCH_WORDS | _FRAME_WORDS).items() for word in words}
+    | dict.fromkeys(_WORKING, "block")
+    | _plain(COMMANDS)
+)

@@ -27,6 +27,10 @@ UNITS: Mapping[str, Mapping[str, float]] = {
     "apparent_power": {"VA": 1.0, "kVA": 1e-3, "MVA": 1e-6},
     "frequency": _FREQUENCIES,
     "time": _TIMES,
+    "angle": {"rad": 1.0, "deg": 360 / TWO_PI},
+    "inductance": {"H": 1.0, "mH": 1e3, "uH": 1e6},
+    "resistance": {"ohm": 1.0, "mohm": 1e3},
+    "capacitance": {"F": 1.0, "mF": 1e3, "uF": 1e6},
     "irradiance": {"W/m2": 1.0, "kW/m2": 1e-3},
     "modulation": {"1": 1.0, "%": 100.0, "duty": 0.5},
     "number": _NUMBERS,
@@ -41,6 +45,8 @@ _SPELLINGS = {
     **dict.fromkeys(("sec", "second", "seconds"), "s"),
     **dict.fromkeys(("p.u.", "p.u", "per unit", "perunit", "[pu]"), PER_UNIT),
     **dict.fromkeys(("hertz", "1/s"), "Hz"),
+    **dict.fromkeys(("degree", "degrees", "°"), "deg"),
+    **dict.fromkeys(("radian", "radians"), "rad"),
     **dict.fromkeys(("rad/sec", "rads", "rad s-1", "radians/s"), "rad/s"),
     **dict.fromkeys(("-", "n/a", "none", "bool", "boolean", "logical", "unitless", "[-]"), "1"),
     **dict.fromkeys(("w/m^2", "w/m²"), "W/m2"),
@@ -131,10 +137,11 @@ def _base(quantity: str, bases: Bases, nominal: Nominal) -> float:
         "number": 1.0,
     }.get(quantity)
     if found is None:
-        need = "" if quantity == "time" else "; write dc_voltage_v under [bases] of a mapping file"
+        need = "" if quantity in _WITHOUT_BASE else "; write dc_voltage_v under [bases] of a mapping file"
         raise DoorError(f"1 pu of a {quantity.replace('_', ' ').replace('dc ', 'DC ')} is not known{need}")
     return found
 
 
+_WITHOUT_BASE = ("time", "angle", "inductance", "resistance", "capacitance")
 _BY_PHASE_RMS = {"phase_peak": 2**0.5, "phase_rms": 1.0, "line_rms": 3**0.5, "line_peak": 6**0.5}
 _STANDARD_IRRADIANCE_W_M2 = 1000.0

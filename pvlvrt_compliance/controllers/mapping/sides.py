@@ -10,9 +10,9 @@ from pvlvrt_compliance.controllers.mapping.constants import Constant
 from pvlvrt_compliance.controllers.mapping.file import InputEntry, MappingFile, OutputEntry
 from pvlvrt_compliance.controllers.mapping.names import QUANTITIES, Guess, guess_input, guess_output
 from pvlvrt_compliance.controllers.mapping.port_units import Bases, Scale, scale_of
-from pvlvrt_compliance.controllers.mapping.ties import Mapped, RawPort, Side, Slot, Tie, tied
+from pvlvrt_compliance.controllers.mapping.ties import INVERTED, Mapped, RawPort, Side, Slot, Tie, tied
 from pvlvrt_compliance.simulation.door.blocks import Element
-from pvlvrt_compliance.simulation.door.exchange import COMMANDS, SIGNALS
+from pvlvrt_compliance.simulation.door.exchange import COMMANDS, SIGNALS, SWITCHES
 from pvlvrt_compliance.units import Nominal
 
 
@@ -59,6 +59,10 @@ def map_outputs(ports: Sequence[RawPort], mapping: MappingFile | None, nominal: 
             signal, scale = _new_channel(name, recorded), Scale(1.0)
         else:
             signal, scale = COMMANDS.index(name), _scaled(slot, entry, name, mapping.bases, nominal)
+        if entry.inverted:
+            return Tie(
+                f"{INVERTED}{name}", Element(signal, slot.byte, slot.port.kind, -1.0, _inverted_from(name, entry))
+            )
         return Tie(name, Element(signal, slot.byte, slot.port.kind, entry.sign * scale.gain, scale.offset))
 
     def names_of(entry: OutputEntry) -> Any:
@@ -89,6 +93,19 @@ def _direction(entry: InputEntry, name: str, mapping: MappingFile) -> int:
         return 1
     direction = entry.direction if "direction" in entry.model_fields_set else mapping.currents
     return -1 if direction == "into_inverter" else 1
+
+
+def _inverted_from(name: str | None, entry: OutputEntry) -> float:
+    """What a switch reads that is off, where 1 is off.
+
+    Raises
+    ------
+    DoorError
+        When what it gives is no switch.
+    """
+    if entry.record is not None or name not in SWITCHES:
+        raise DoorError(f"inverted is for switches ({', '.join(SWITCHES)})")
+    return 1.0
 
 
 def _new_channel(name: str, recorded: list[str]) -> int:

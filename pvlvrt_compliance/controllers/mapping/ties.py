@@ -14,7 +14,10 @@ from pvlvrt_compliance.simulation.door.blocks import ITEM_SIZES, Element
 from pvlvrt_compliance.simulation.door.exchange import COMMANDS
 from pvlvrt_compliance.simulation.door.ports import REAL64
 
-_INDEXED = re.compile(r"(.+)\[(\d+)\]")
+_INDEXED = re.compile(r"(.+)\[(\d{1,9})\]")
+INVERTED = "not "
+"""Before the name of a switch whose output says the opposite."""
+
 _TARGETS = {"inputs": "signal", "outputs": "command"}
 
 
@@ -38,6 +41,7 @@ class Mapped(NamedTuple):
     constants: tuple[Constant, ...] = ()
     recorded: tuple[str, ...] = ()  # channels of the further signals, in their order
     in_volts: bool = False  # whether the outputs command voltages
+    in_a_frame: bool = False  # whether they do so in a frame that turns
     missing: tuple[str, ...] = ()  # commands that no output gives
 
 
@@ -125,7 +129,8 @@ def _entry_of(slot: Slot, side: Side, guess: Guess) -> tuple[str, Any, str | Non
         return "", None, None
     name = guess.names[slot.k]
     if name in side.known:
-        return "", side.entry_type(**{_TARGETS[side.table]: (name,)}, unit=slot.port.unit or guess.unit), name
+        more = {"inverted": True} if guess.inverted else {}
+        return "", side.entry_type(**{_TARGETS[side.table]: (name,)}, unit=slot.port.unit or guess.unit, **more), name
     return "", side.entry_type(record=(name,)), name
 
 
@@ -165,7 +170,7 @@ def _twice(side: Side, ties: Mapping[str, Tie]) -> Iterator[str]:
     if side.table == "inputs":
         return
     for name in COMMANDS:
-        by = [port for port, tie in ties.items() if tie.name == name]
+        by = [port for port, tie in ties.items() if tie.name.removeprefix(INVERTED) == name]
         if len(by) > 1:
             yield f"{' and '.join(by)} both give {name}; tie one of them to something else in a mapping file"
 

@@ -8,12 +8,11 @@ import os
 import signal
 import sys
 import threading
-import time
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, NoReturn
 
-from pvlvrt_compliance.controllers.process.family import Process, adopt_orphans, descendants, kill, reap
+from pvlvrt_compliance.controllers.process.family import Process, adopt_orphans, descendants, end_descendants
 
 _PATIENCE_S = 1.0  # with what has been told to end
 
@@ -66,14 +65,8 @@ class _Command:
 
     def end_family(self) -> None:
         """Kill what is left of what was started, one by one, until nothing is."""
-        until = time.monotonic() + _PATIENCE_S
-        while self.spared is not None and (family := descendants(os.getpid(), self.spared)):
-            for process in family:
-                kill(process)
-            for process in family:
-                reap(process, until)
-            if time.monotonic() > until:
-                return
+        if self.spared is not None:
+            end_descendants(self.spared, _PATIENCE_S)
 
 
 _command = _Command()

@@ -47,7 +47,7 @@ def clear_abandoned() -> None:
             if (lock := take_lock(path)) is None:
                 continue
             if lock.is_certain:
-                shutil.rmtree(folder, ignore_errors=True)
+                _remove_folder(folder)
                 lock.release()
             else:
                 lock.close()
@@ -70,9 +70,29 @@ def _remove_at_end() -> None:
 
 def _remove(folder: Path) -> None:
     lock = _open.pop(folder, None)
-    shutil.rmtree(folder, ignore_errors=True)
+    _remove_folder(folder)
     if lock is not None:
         lock.release()
+
+
+def _remove_folder(folder: Path) -> None:
+    """Remove a folder, also where a controller has taken the right to that, or has put a link in its place."""
+    shutil.rmtree(folder, ignore_errors=True)
+    if folder.is_symlink():
+        with suppress(OSError):
+            folder.unlink()
+    elif folder.exists():
+        for path in _folders_from(folder):
+            with suppress(OSError):
+                path.chmod(0o700)
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _folders_from(folder: Path) -> Iterator[Path]:
+    """A folder and those in it, each before it is looked into."""
+    yield folder
+    for path, names, _ in os.walk(folder):
+        yield from (Path(path, name) for name in names if not Path(path, name).is_symlink())
 
 
 def _remove_all() -> None:

@@ -1,5 +1,6 @@
 """What runs in the process of a user's controller: a server that does jobs, and the jobs."""
 
+import io
 import json
 import mmap
 import os
@@ -13,17 +14,27 @@ from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pvlvrt_compliance.controllers.description import Value
 from pvlvrt_compliance.controllers.door import Door, described
 from pvlvrt_compliance.controllers.doors import door_to
+from pvlvrt_compliance.controllers.limits import Limits, hold_to
 from pvlvrt_compliance.controllers.process import command, family
+from pvlvrt_compliance.controllers.process.answer import ANSWER, RECORD, write_answer
 from pvlvrt_compliance.controllers.process.child import own_pipes
-from pvlvrt_compliance.controllers.process.isolation import ANSWER, JOB, PROGRESS, RECORD, SAID
+from pvlvrt_compliance.controllers.process.isolation import JOB, PROGRESS, SAID
+from pvlvrt_compliance.controllers.process.lines import say
+from pvlvrt_compliance.controllers.process.watch import Watch, fence, open_fence
 from pvlvrt_compliance.errors import PvlvrtError, SimulationError
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.recorder import RecordingPlan
+
+OWN_FILES = frozenset({JOB, SAID, PROGRESS, ANSWER, f"{ANSWER}.part", RECORD})
+"""Files in the folder of a job that are not its controller's."""
+
+_PATIENCE_S = 5.0  # with what a job has left behind
 
 
 @dataclass(frozen=True)
@@ -48,62 +59,85 @@ class RunJob(DescribeJob):
 
 
 def main() -> None:
-    """Serve: a line in, the folder of a job; lines out, `ready`, then `started PID` and `ended STATUS` for each."""
+    """Serve: a line in, a job, its folder and its limits; lines out (`lines`), what becomes of it.
+
+    Where there are copies, whatever a job leaves behind ends with it: this process is the parent of its orphans.
+    """
     told, answered = own_pipes()
-    jobs = os.fdopen(told, encoding="utf-8", errors="surrogateescape")
-    answers = os.fdopen(answered, "w", encoding="utf-8")
+    jobs, answers = os.fdopen(told, "rb"), os.fdopen(answered, "w", encoding="utf-8")
     command.become_the_server()
+    family.adopt_orphans()
+    for stream in (sys.stdout, sys.stderr):  # read as UTF-8, whatever the terminal of the user writes
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(encoding="utf-8", errors="backslashreplace")
     from pvlvrt_compliance.controllers.run import warm_up
 
     warm_up()
-    _say(answers, "ready")
+    say(answers, "ready")
     while line := jobs.readline():
-        folder = Path(line.rstrip("\n"))
+        try:
+            told_job = json.loads(line)
+            job, folder, limits = told_job["job"], Path(told_job["folder"]), Limits(**told_job["limits"])
+        except (ValueError, TypeError, KeyError):  # whoever has written that is not the command
+            return
         if family.FORKS:
-            _fork(folder, jobs, answers)
+            _fork(job, folder, limits, jobs, answers)
         else:
-            _say(answers, f"started {os.getpid()}")
-            _do(folder)
+            say(answers, "started", job, pid=os.getpid())
+            _do(job, folder, limits)
             return
 
 
-def _say(answers: IO[str], line: str) -> None:
-    print(line, file=answers, flush=True)
-
-
-def _fork(folder: Path, jobs: IO[str], answers: IO[str]) -> None:
+def _fork(job: str, folder: Path, limits: Limits, jobs: IO[bytes], answers: IO[str]) -> None:
     """Do a job in a copy of this process, which ends with it; and with the last reader of the answers."""
 
     def work() -> None:
         os.close(jobs.fileno())
         os.close(answers.fileno())
-        _do(folder)
+        _do(job, folder, limits)
 
-    # The other side sends no job before it has heard of the last: what ends is the other side.
-    status = family.in_a_copy(work, lambda pid: _say(answers, f"started {pid}"), jobs.fileno())
+    def begun(pid: int) -> None:
+        say(answers, "started", job, pid=pid)
+
+    watch = Watch(limits, folder / SAID, folder, OWN_FILES)
+    try:
+        # The other side sends no job before it has heard of the last: what ends is the other side.
+        end = family.in_a_copy(work, begun, jobs.fileno(), watch.look)
+        why = watch.at_end(end)
+    finally:
+        watch.close()
+        family.end_descendants(patience_s=_PATIENCE_S)
     with suppress(BrokenPipeError):  # it has gone
-        _say(answers, f"ended {status}")
+        say(answers, "ended", job, status=end.status, why=why)
 
 
-def _do(folder: Path) -> None:
+def _do(job_id: str, folder: Path, limits: Limits) -> None:
     said = os.open(folder / SAID, os.O_WRONLY | os.O_APPEND)
     os.dup2(said, 1)
     os.dup2(said, 2)
-    job = pickle.loads((folder / JOB).read_bytes())
+    job, process = pickle.loads((folder / JOB).read_bytes()), os.getpid()
     os.chdir(job.beside)
     tempfile.tempdir = str(folder)  # removed with the job, however it ends
+    os.environ.update(dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(folder)))  # of programs, too
+    hold_to(limits)
+    fence(limits)
+    samples = None
     try:
-        answer = _answer(job, folder)
+        answer, samples = _answer(job, folder)
     except PvlvrtError as error:
         answer = {"error": str(error)}
+    if os.getpid() != process:  # the controller has made a copy of this process, which has come here, too
+        os._exit(0)
     sys.stdout.flush()
     sys.stderr.flush()
-    unfinished = folder / f"{ANSWER}.part"
-    unfinished.write_text(json.dumps(answer), "utf-8")
-    unfinished.rename(folder / ANSWER)
+    open_fence()
+    try:
+        write_answer(folder, job_id, answer, samples)
+    except FileNotFoundError:  # its folder has been removed, which is seen there
+        os._exit(1)
 
 
-def _answer(job: DescribeJob, folder: Path) -> dict[str, Any]:
+def _answer(job: DescribeJob, folder: Path) -> tuple[dict[str, Any], NDArray[np.float64] | None]:
     door = door_to(job.spec, job.given, job.mapping)
     try:
         return _use(door, job, folder)
@@ -111,9 +145,9 @@ def _answer(job: DescribeJob, folder: Path) -> dict[str, Any]:
         door.close()
 
 
-def _use(door: Door, job: DescribeJob, folder: Path) -> dict[str, Any]:
+def _use(door: Door, job: DescribeJob, folder: Path) -> tuple[dict[str, Any], NDArray[np.float64] | None]:
     if not isinstance(job, RunJob):
-        return {"description": described(door).to_json()}
+        return {"description": described(door).to_json()}, None
     from pvlvrt_compliance.controllers.run import run_through
 
     if door.describe().digest != job.digest:
@@ -121,9 +155,4 @@ def _use(door: Door, job: DescribeJob, folder: Path) -> dict[str, Any]:
     with (folder / PROGRESS).open("r+b") as file:
         progress: Any = np.frombuffer(mmap.mmap(file.fileno(), 0), dtype=np.float64)
     record = run_through(door, job.scenario, job.parameters, job.plan, progress, after_trip=job.after_trip)
-    try:
-        np.save(folder / RECORD, record.samples)
-    except OSError as error:
-        (folder / RECORD).unlink()  # room for the answer
-        raise SimulationError(f"{folder / RECORD} cannot be written: {error.strerror or error}") from None
-    return {"channels": record.channels, "notes": record.notes, "tripped_at_s": record.tripped_at_s}
+    return {"channels": record.channels, "notes": record.notes, "tripped_at_s": record.tripped_at_s}, record.samples

@@ -112,6 +112,8 @@ class ProgramDoor(Door):
             inputs=Block(memories[0], inputs.elements),
             outputs=Block(memories[1], outputs.elements),
             in_volts=outputs.in_volts,
+            in_a_frame=outputs.in_a_frame,
+            every=self._hello.every,
             recorded=outputs.recorded,
         )
 

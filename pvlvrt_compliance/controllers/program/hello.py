@@ -12,6 +12,7 @@ from pvlvrt_compliance.data.problems import dotted, problem_lines
 from pvlvrt_compliance.errors import listed
 from pvlvrt_compliance.simulation.door.blocks import MODULATING
 from pvlvrt_compliance.simulation.door.exchange import COMMANDS, SIGNALS
+from pvlvrt_compliance.texts import shortened
 from pvlvrt_compliance.waveforms.container import unit_of
 
 PROTOCOL, VERSION = "pvlvrt-check", 1
@@ -57,6 +58,7 @@ class Hello(_Strict):
     name: str = "program"
     sample_time_s: FiniteFloat = Field(gt=0)
     mode: Literal["json", "binary"] = "json"
+    every: int = Field(default=1, ge=1, le=1_000_000, description="samples from one run of a slow task to the next")
     inputs: tuple[AnyPort, ...] = tuple(PortAnswer(name=name) for name in SIGNALS)
     outputs: tuple[AnyPort, ...] = tuple(PortAnswer(name=name) for name in MODULATING)
     parameters: Mapping[str, AnyParameter] = {}
@@ -108,8 +110,7 @@ def table_in(line: bytes) -> dict[str, Any]:
 
 def shown(data: bytes) -> str:
     """Bytes for a person to read, not too many."""
-    text = data[:_SHOWN].decode("utf-8", "backslashreplace")
-    return repr(text) + (" ..." if len(data) > _SHOWN else "")
+    return shortened(repr(data.decode("utf-8", "backslashreplace")), _SHOWN)
 
 
 def hello_in(line: bytes) -> Hello:

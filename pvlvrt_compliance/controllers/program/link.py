@@ -134,7 +134,7 @@ def link_to(spec: str, timeout_s: float) -> Link:
     if spec.startswith(STDIO):
         return Pipes(command_of(spec))
     host, _, port = spec.removeprefix(TCP).rpartition(":")
-    if not (host and port.isdecimal() and 0 < int(port) < 1 << 16):
+    if not (host and port.isdecimal() and len(port) < 6 and 0 < int(port) < 1 << 16):
         raise DoorError("write tcp://HOST:PORT, for instance tcp://127.0.0.1:5000")
     return Connection(host.strip("[]"), int(port), timeout_s)
 

@@ -1,16 +1,12 @@
 """The door for a Python class, ``my_ctrl.py:MyController``: see `pvlvrt_compliance.controllers`."""
 
 import hashlib
-import importlib.util
 import inspect
 import math
 import reprlib
 import struct
-import sys
-import traceback
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 from pvlvrt_compliance.controllers import Measurements
@@ -19,15 +15,15 @@ from pvlvrt_compliance.controllers.description import Description, ParameterInfo
 from pvlvrt_compliance.controllers.door import Door, DoorCall, DoorError
 from pvlvrt_compliance.controllers.given_parameters import checked_parameters
 from pvlvrt_compliance.controllers.mapping.file import load_mapping, mapping_path
-from pvlvrt_compliance.errors import did_you_mean
+from pvlvrt_compliance.controllers.python.importing import class_in, tail
+from pvlvrt_compliance.controllers.python.tasks import NUMBERS, every, put, switches, with_slow_task
+from pvlvrt_compliance.controllers.spelling import SUFFIX
 from pvlvrt_compliance.simulation.door.blocks import MODULATING, VOLTAGES, real_block
 from pvlvrt_compliance.simulation.door.exchange import COMMANDS, SIGNALS
 from pvlvrt_compliance.simulation.door.native_call import FAILED, FUNCTION, address_of
 from pvlvrt_compliance.units import Nominal
 from pvlvrt_compliance.waveforms.container import unit_of
 
-_SUFFIX = ".py"
-_TRACEBACK_LINES = 6
 _MOST_SIGNALS = 200
 
 
@@ -37,7 +33,8 @@ class PythonDoor(Door):
     Parameters
     ----------
     spec : str
-        File and class, ``my_ctrl.py:MyController``.
+        File and class, ``my_ctrl.py:MyController``, or module and class, ``pkg.module:MyController``: one that is
+        installed, or lies in the working folder.
     given : mapping
         Parameters that the user has set.
     mapping : str, optional
@@ -47,26 +44,25 @@ class PythonDoor(Door):
     Raises
     ------
     DoorError
-        When there is no such file or class, it cannot be made, or it is not a controller.
+        When there is no such file, module or class, it cannot be made, or it is not a controller.
     """
 
-    written = "FILE.py:CLASS"
-    suffixes = (_SUFFIX,)
+    written = "FILE.py:CLASS, MODULE:CLASS"
+    suffixes = (SUFFIX,)
 
     _mapping_file: str | None = None
 
     def __init__(self, spec: str, given: Mapping[str, Value], mapping: str | None = None) -> None:
-        file, _, self._class_name = spec.rpartition(":")
-        self._file = Path(file)
-        if Path(spec).suffix == _SUFFIX:
+        place, _, self._class_name = spec.rpartition(":")
+        if Path(spec).suffix == SUFFIX:
             raise DoorError(f"name the class, too: {spec}:MyController")
-        if not file or not self._class_name.isidentifier():
-            raise DoorError("write FILE.py:CLASS")
-        if not self._file.is_file():
-            raise DoorError(f"there is no file {self._file}")
-        self._begin(_class_in(self._file, self._class_name), given)
+        if not place or not self._class_name.isidentifier():
+            raise DoorError(f"write {self.written}")
+        found = class_in(place, self._class_name)
+        self._file = found.file
+        self._begin(found.made, given)
         self._digest = hashlib.sha256(self._file.read_bytes()).hexdigest()
-        self._mapping_file = _list_of_files(file, mapping)
+        self._mapping_file = _list_of_files(str(self._file), mapping)
 
     def _begin(self, made: Any, given: Mapping[str, Value]) -> None:
         """Make the controller, and see that it is one."""
@@ -75,13 +71,15 @@ class PythonDoor(Door):
         self._said = ""
         self._alive: tuple[Any, ...] = ()
         self._sample_time_s = _sample_time_s(self._controller)
+        self._switches = switches(self._controller)
+        self._every = every(self._controller)
         for method in ("reset", "step"):
             if not callable(getattr(self._controller, method, None)):
                 raise DoorError(f"{self._class_name} has no method {method}()")
 
     def describe(self) -> Description:
         """Class, file, what it can be given and what it commands."""
-        commands = VOLTAGES if self._in_volts else MODULATING
+        commands = self._commands
         return Description(
             kind="python",
             name=self._class_name,
@@ -105,6 +103,11 @@ class PythonDoor(Door):
     def _in_volts(self) -> bool:
         return bool(getattr(self._controller, "commands_voltages", False))
 
+    @property
+    def _commands(self) -> tuple[str, ...]:
+        """What `step` returns, in its order."""
+        return (*(VOLTAGES if self._in_volts else MODULATING), *self._switches)
+
     def open(self, nominal: Nominal) -> DoorCall:
         """Reset the controller and make the function that the loop calls."""
         try:
@@ -113,9 +116,9 @@ class PythonDoor(Door):
         except DoorError:
             raise
         except BaseException as error:
-            raise DoorError(f"reset() failed: {_tail(error)}") from None
+            raise DoorError(f"reset() failed: {tail(error)}") from None
         inputs = real_block(range(len(SIGNALS)))
-        commands = VOLTAGES if self._in_volts else MODULATING
+        commands = self._commands
         further = range(len(COMMANDS), len(COMMANDS) + len(names))
         outputs = real_block([*(COMMANDS.index(name) for name in commands), *further])
         function = FUNCTION(self._caller(inputs.memory.data, outputs.memory.data.cast("d"), names))
@@ -126,6 +129,7 @@ class PythonDoor(Door):
             inputs=inputs,
             outputs=outputs,
             in_volts=self._in_volts,
+            every=self._every,
             recorded=names,
         )
 
@@ -153,7 +157,9 @@ class PythonDoor(Door):
     def _caller(self, inputs: Any, outputs: Any, names: tuple[str, ...]) -> Callable[[Any], int]:
         """Function that advances the controller by one sample; it gives 1 when that fails."""
         controller = self._controller
-        step, signals = controller.step, controller.signals if names else None
+        step = with_slow_task(controller) if self._every > 1 else controller.step
+        signals = controller.signals if names else None
+        due = len(self._commands)
         read = struct.Struct(f"{len(SIGNALS)}d").unpack_from
         new: Any = tuple.__new__
 
@@ -162,12 +168,15 @@ class PythonDoor(Door):
                 # Not `_make`, which checks the length anew: this is the cost of every sample.
                 commands = step(new(Measurements, read(inputs)))
             except BaseException as error:
-                self._said = f"step() failed: {_tail(error)}"
+                self._said = f"step() failed: {tail(error)}"
                 return FAILED
             try:
-                outputs[0], outputs[1], outputs[2] = commands
+                if due == len(MODULATING):
+                    outputs[0], outputs[1], outputs[2] = commands
+                else:
+                    put(outputs, commands, due)
             except (TypeError, ValueError) as error:
-                self._said = f"step() must return three numbers, not {reprlib.repr(commands)}: {error}"
+                self._said = f"step() must return {NUMBERS[due]} numbers, not {reprlib.repr(commands)}: {error}"
                 return FAILED
             return 0
 
@@ -176,11 +185,11 @@ class PythonDoor(Door):
                 return FAILED
             try:
                 said = signals()
-                for k, name in enumerate(names, start=3):
+                for k, name in enumerate(names, start=due):
                     outputs[k] = said[name]
                 return 0
             except BaseException as error:
-                self._said = f"signals() failed: {_tail(error)}"
+                self._said = f"signals() failed: {tail(error)}"
                 return FAILED
 
         return advance_and_ask if names else advance
@@ -203,30 +212,6 @@ def _list_of_files(file: str, named: str | None) -> str | None:
         said = "a Python class takes its measurements by their names"
         raise DoorError(f"{said}; --mapping does not go with it, but for one that only lists files (files = [...])")
     return path if mapping is not None and mapping.files else None
-
-
-def _class_in(file: Path, name: str) -> Any:
-    module = _module(file)
-    found = getattr(module, name, None)
-    if not inspect.isclass(found):
-        classes = [n for n, x in vars(module).items() if inspect.isclass(x) and x.__module__ == module.__name__]
-        raise DoorError(f"{file} has no class {name!r}{did_you_mean(name, classes)}")
-    return found
-
-
-def _module(file: Path) -> ModuleType:
-    """Import a file as a module of its own name, with the modules beside it within reach."""
-    sys.path.insert(0, str(file.resolve().parent))
-    specification = importlib.util.spec_from_file_location(file.stem, file)
-    if specification is None or specification.loader is None:
-        raise DoorError(f"{file} is not a Python file")
-    module = importlib.util.module_from_spec(specification)
-    sys.modules[file.stem] = module
-    try:
-        specification.loader.exec_module(module)
-    except BaseException as error:
-        raise DoorError(f"{file} cannot be imported: {_tail(error)}") from None
-    return module
 
 
 def _defaults(made: Any) -> dict[str, Value]:
@@ -259,7 +244,7 @@ def _make(made: Any, given: Mapping[str, Value], keywords: bool) -> Any:
             setattr(controller, name, value)
         return controller
     except BaseException as error:
-        raise DoorError(f"{getattr(made, '__name__', made)} cannot be made: {_tail(error)}") from None
+        raise DoorError(f"{getattr(made, '__name__', made)} cannot be made: {tail(error)}") from None
 
 
 def _sample_time_s(controller: Any) -> float:
@@ -270,12 +255,3 @@ def _sample_time_s(controller: Any) -> float:
     if isinstance(given, (int, float)) and math.isfinite(given) and given > 0:
         return float(given)
     raise DoorError(f"{name}.sample_time_s is {reprlib.repr(given)}; it must be a number of seconds above zero")
-
-
-def _tail(error: BaseException) -> str:
-    """An exception, and the last lines of where it came from."""
-    frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename != __file__]
-    own = [f for f in frames if "importlib" not in f.filename]
-    lines = [f"  {Path(f.filename).name}, line {f.lineno}, in {f.name}: {f.line}" for f in own[-_TRACEBACK_LINES:]]
-    said = "".join(traceback.format_exception_only(error)).strip()
-    return "\n".join([said, *lines])

@@ -21,8 +21,8 @@ from pvlvrt_compliance.report.drawing.in_page import Figures, figures_of, styled
 from pvlvrt_compliance.report.drawing.looks import Looks
 from pvlvrt_compliance.report.drawing.model import Drawing
 from pvlvrt_compliance.report.drawing.plotly_js import plotly_packed
-from pvlvrt_compliance.report.formats.html import environment, read
 from pvlvrt_compliance.report.language import Texts
+from pvlvrt_compliance.report.page.environment import environment, read
 from pvlvrt_compliance.resources import resource_folder
 from pvlvrt_compliance.results.changes import Key
 from pvlvrt_compliance.results.comparison import Changed, Comparison

@@ -5,19 +5,19 @@ from functools import cache
 from typing import Any
 
 from pvlvrt_compliance.evidence.evidence import Evidence
-from pvlvrt_compliance.report.drawing.in_page import figures_of
 from pvlvrt_compliance.report.drawing.model import Drawing
 from pvlvrt_compliance.report.drawing.of_test import drawing
 from pvlvrt_compliance.report.language import Texts
+from pvlvrt_compliance.report.page.section import section_of
 from pvlvrt_compliance.results import TestResult
 
 
-def _as_drawn(drawn: Drawing, _texts: Texts) -> Drawing:
+def _as_drawn(drawn: Drawing, _result: TestResult, _texts: Texts) -> Drawing:
     return drawn
 
 
-FORMS: Mapping[str, Callable[[Drawing, Texts], Any]] = {"drawing": _as_drawn, "page": figures_of}
-"""What a drawing may become: itself, for a report that draws it as no other does, or the figures of a page, packed."""
+FORMS: Mapping[str, Callable[[Drawing, TestResult, Texts], Any]] = {"drawing": _as_drawn, "page": section_of}
+"""What a drawing may become: itself, for a report that draws it as no other does, or the section of a page."""
 
 
 def made(
@@ -40,7 +40,7 @@ def made(
     if not forms:
         return {}
     drawn = drawing(evidence, result, buckets=buckets)
-    return {form: FORMS[form](drawn, _texts(language)) for form in forms}
+    return {form: FORMS[form](drawn, result, _texts(language)) for form in forms}
 
 
 @cache

@@ -2,6 +2,7 @@
 
 import io
 import textwrap
+import warnings
 from collections.abc import Sequence
 from typing import Any
 
@@ -32,7 +33,9 @@ def render(name: str, title: str, panels: Sequence[Panel]) -> bytes:
     for axes, panel in zip(figure.subplots(len(panels), squeeze=False)[:, 0], panels, strict=True):
         _draw(axes, panel)
     file = io.BytesIO()
-    figure.savefig(file, format="png", dpi=120, metadata={"Software": None})
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph ")  # a letter that its font lacks is drawn as a box
+        figure.savefig(file, format="png", dpi=120, metadata={"Software": None})
     return file.getvalue()
 
 

@@ -1,32 +1,28 @@
 """`report.html`: one file that needs no network."""
 
-import re
-from collections.abc import Iterable, Mapping, Sequence
-from functools import cache, partial
+from collections.abc import Mapping, Sequence
+from functools import partial
 from itertools import pairwise
-from pathlib import Path
 from typing import Any, NamedTuple
 
-from jinja2 import Environment
 from markupsafe import Markup
 
-from pvlvrt_compliance.report import cursor_table, measurement_table, templates
 from pvlvrt_compliance.report import format as spell
-from pvlvrt_compliance.report.document.baseline import against_baseline, said_of
+from pvlvrt_compliance.report.document.baseline import against_baseline
 from pvlvrt_compliance.report.document.coverage import coverage
-from pvlvrt_compliance.report.document.front import Front, front, margin_in_words
+from pvlvrt_compliance.report.document.front import Front, front
 from pvlvrt_compliance.report.document.matrix import matrices
-from pvlvrt_compliance.report.document.scenario import imposed_rows, scenario_words
 from pvlvrt_compliance.report.drawing import colours
-from pvlvrt_compliance.report.drawing.in_page import Figures, figures_of, styled
 from pvlvrt_compliance.report.drawing.looks import Looks
 from pvlvrt_compliance.report.drawing.model import Drawing
 from pvlvrt_compliance.report.drawing.plotly_js import plotly_packed
-from pvlvrt_compliance.report.language import BASE, Texts
+from pvlvrt_compliance.report.language import Texts
+from pvlvrt_compliance.report.page.environment import environment, read
+from pvlvrt_compliance.report.page.section import Section, section_of, told
 from pvlvrt_compliance.report.provenance import provenance_groups
-from pvlvrt_compliance.report.verdicts import findings, is_verified, may_decide, name_of, verdicts
+from pvlvrt_compliance.report.verdicts import findings, may_decide, name_of
 from pvlvrt_compliance.resources import resource_folder
-from pvlvrt_compliance.results import JUDGED, Results, Status, TestResult, Verdict
+from pvlvrt_compliance.results import Results, Status, TestResult
 from pvlvrt_compliance.results.files import REPORT
 
 FILE = REPORT
@@ -34,16 +30,6 @@ OF_WHOLE_RUNS = True
 SHOWS = "page"
 
 _WORST = 5  # margins that the first page shows at once; the others are folded below them
-
-_INDENTATION = re.compile(r"\n\s+")
-_LEFT_TO_READERS = re.compile(r"</t[dhr]>\s*(?=</?t[bdhr])")
-
-_CHECK_COLUMNS = ("check", "measured", "limit", "margin", "uncertainty", "at", "verdict", "clause", "confidence")
-_CLAUSE_COLUMNS = ("clause", "about", "state", "judged", "margin", "where", "confidence")
-_IMPOSED_COLUMNS = (
-    *("window", "span", "asked_positive", "measured_positive", "difference"),
-    *("asked_negative", "measured_negative", "difference"),
-)
 
 
 class _Way(NamedTuple):
@@ -53,14 +39,14 @@ class _Way(NamedTuple):
     after: int
 
 
-def render(results: Results, drawings: Mapping[str, Drawing | Figures]) -> str:
+def render(results: Results, drawings: Mapping[str, Drawing | Section]) -> str:
     """Return the report as one HTML document, in the language of ``results.report``.
 
     Parameters
     ----------
     results : Results
     drawings : mapping
-        Drawings of tests, or what has been made of them for a page, by their key; a test without one says so.
+        Drawings of tests, or the sections that have been made of them, by their key; a test without one says so.
 
     Raises
     ------
@@ -71,17 +57,18 @@ def render(results: Results, drawings: Mapping[str, Drawing | Figures]) -> str:
     """
     folder = resource_folder("reports")
     texts = Texts(results.report.language)
-    used = {test.key: drawings[test.key] for test in results.tests if test.key in drawings}
-    looks = Looks()
-    figures = {name: styled(_figures(drawn, texts), looks) for name, drawn in used.items()}
+    sections = [_section(drawings.get(test.key), test, texts) for test in results.tests]
+    has_figures = any(section.figures for section in sections)
+    looks = Looks(look for section in sections for look in section.looks)
     return (
         environment(folder, texts.language)
         .get_template("report.html.j2")
         .render(
             _of_run(results, texts),
             name=partial(name_of, results=results),
-            figures=figures,
-            plotly_packed=plotly_packed() if used else "",
+            sections=sections,
+            has_figures=has_figures,
+            plotly_packed=plotly_packed() if has_figures else "",
             css=read(folder, "report.css", "figures.css", "cursors.css") + Markup(colours.style() + looks.style()),
             js=read(folder, "page.js"),
             figures_js=read(folder, "figures.js"),
@@ -89,13 +76,11 @@ def render(results: Results, drawings: Mapping[str, Drawing | Figures]) -> str:
     )
 
 
-def _figures(drawn: Drawing | Figures, texts: Texts) -> Figures:
-    return drawn if isinstance(drawn, Figures) else figures_of(drawn, texts)
-
-
-def read(folder: Path, *names: str) -> Markup:
-    """Files of ours one after the other, as they stand."""
-    return Markup("\n".join((folder / name).read_text(encoding="utf-8") for name in names))
+def _section(made: Drawing | Section | None, test: TestResult, texts: Texts) -> Section:
+    """The section of a test, of what has been made of its record; what a baseline has marked is told anew."""
+    if made is None or isinstance(made, Section):
+        return told(made or Section(), test, texts)
+    return section_of(made, test, texts)
 
 
 def _of_run(results: Results, texts: Texts) -> dict[str, Any]:
@@ -112,7 +97,6 @@ def _of_run(results: Results, texts: Texts) -> dict[str, Any]:
         "may_decide": bool(may_decide(results)),
         "tables": tables,
         "coverage": coverage(results, texts),
-        "folded": _folded(texts),
         "statuses": [status for status in Status if any(status in {t.status, *t.statuses} for t in results.tests)],
         "check_names": sorted({name for table in tables for name in table.checks}),
         "row_of": {
@@ -134,19 +118,6 @@ def _marked(results: Results) -> dict[str, int]:
     return {mark: found.count(mark) for mark in spell.MARK_SYMBOL if mark in found}
 
 
-def _folded(texts: Texts) -> dict[str, tuple[str, ...]]:
-    """Headings of the tables whose cells stand below each other on a narrow screen."""
-    columns = {
-        "checks": ("section.heading", _CHECK_COLUMNS),
-        "imposed": ("scenario.column", _IMPOSED_COLUMNS),
-        "clauses": ("coverage.column", _CLAUSE_COLUMNS),
-        "profiles": ("page.column", ("profile", "title", "digest")),
-    }
-    told = {table: tuple(texts(f"{of}.{name}") for name in names) for table, (of, names) in columns.items()}
-    cursors = tuple(f"{name}, {unit}" if unit else name for name, unit in cursor_table.headings(texts))
-    return {**told, "cursors": cursors}
-
-
 def _running_title(results: Results, first: Front, texts: Texts) -> str:
     """What stands above every printed page: the number of the document where one was given, and what it is."""
     number, tested = results.report.fields.get("number", ""), results.report.fields.get("object", "")
@@ -159,79 +130,6 @@ def _ways(failed: Sequence[int]) -> dict[int, _Way]:
     befores = {after: before for before, after in pairwise(failed)}
     afters = dict(pairwise(failed))
     return {number: _Way(befores.get(number, 0), afters.get(number, 0)) for number in failed}
-
-
-@cache
-def environment(folder: Path, language: str) -> Environment:
-    """Templates with what all of them call, compiled once a language."""
-    texts = Texts(language)
-    made = templates.environment(folder, __file__, lstrip_blocks=True)
-    made.filters.update(css_string=_css_string, lean=_lean)
-    made.globals.update(
-        texts=texts,
-        english="" if texts.language == BASE else Markup(f' lang="{BASE}"'),
-        verdicts=verdicts,
-        row=partial(spell.row, texts=texts),
-        is_bare=_is_bare,
-        limit_in_words=partial(spell.limit_in_words, texts=texts),
-        marginal_in_words=partial(spell.marginal_in_words, texts=texts),
-        said_of=partial(said_of, texts=texts),
-        baseline_in_words=partial(spell.baseline_in_words, texts=texts),
-        marks_of=spell.marks_of,
-        marks_in_words=partial(spell.marks_in_words, texts=texts),
-        mark_symbol=spell.MARK_SYMBOL,
-        why=partial(_why, texts),
-        margin_in_words=partial(margin_in_words, texts=texts),
-        stretch_unless_told=spell.stretch_unless_told,
-        number=spell.number,
-        label=partial(texts.named, "check"),
-        names=partial(_names, texts),
-        word=lambda status: texts(f"status.{status}"),
-        symbol=lambda status: spell.STATUS_SYMBOL[Status(status)],
-        is_verified=is_verified,
-        window_headings=measurement_table.window_headings,
-        measured_rows=measurement_table.measured_rows,
-        beliefs=partial(_beliefs, texts),
-        scenario_words=scenario_words,
-        imposed_rows=imposed_rows,
-        cursor_headings=cursor_table.headings,
-        cursor_note=cursor_table.note,
-        cursor_parts=cursor_table.cursor_parts,
-    )
-    return made
-
-
-def _lean(markup: str) -> Markup:
-    """Markup without indentation and the end tags that HTML leaves to the reader: of 494 tests they are 2 MB."""
-    return Markup(_LEFT_TO_READERS.sub("", _INDENTATION.sub("\n", markup)))
-
-
-def _css_string(text: str) -> Markup:
-    """A text as CSS shows it: all but plain letters and digits is escaped, so that nothing ends string or sheet."""
-    plain = (letter if letter.isascii() and letter.isalnum() else f"\\{ord(letter):x} " for letter in text)
-    return Markup(f'"{"".join(plain)}"')
-
-
-def _is_bare(check: Verdict) -> bool:
-    """Whether a verdict has no number, so that its reason may stand where the numbers would."""
-    return check.status not in JUDGED and check.measured is check.limit is check.margin is check.at_s is None
-
-
-def _why(texts: Texts, check: Verdict) -> Markup:
-    """Why a verdict has no number: what is not judged for a trip in the page's own words, else the check's message."""
-    if texts.language == BASE:
-        return Markup.escape(check.message)
-    if check.after_trip_s is not None:
-        return Markup.escape(spell.state_in_words(check, texts))
-    return Markup('<span lang="{}">{}</span>').format(BASE, check.message)
-
-
-def _names(texts: Texts, checks: Iterable[str]) -> str:
-    return ", ".join(texts.named("check", name) for name in checks)
-
-
-def _beliefs(texts: Texts, test: TestResult) -> str:
-    return measurement_table.beliefs_in_words(test.measurements.controller, texts)
 
 
 def _marks(results: Results) -> list[str]:

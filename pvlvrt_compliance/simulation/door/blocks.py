@@ -31,7 +31,8 @@ ITEM_SIZES = {code: np.dtype(number).itemsize for code, number in NUMBER_TYPES.i
 """Bytes of a number by the code of its type."""
 
 MODULATING, VOLTAGES = (tuple(COMMANDS[place] for place in places) for places in (COMMANDED_M, COMMANDED_U))
-"""Commands of a controller that modulates, and of one that commands voltages."""
+IN_A_FRAME = ("u_d_ref_v", "u_q_ref_v", "angle_rad")
+"""Commands of a controller that modulates, and of one that commands voltages: by phase, or in a frame that turns."""
 
 
 class Element(NamedTuple):

@@ -8,17 +8,19 @@ from numpy.typing import NDArray
 from pvlvrt_compliance.kernel import kernel
 from pvlvrt_compliance.measured import Measured
 from pvlvrt_compliance.plant.inverter import K_PWM, limit_modulation
-from pvlvrt_compliance.plant.plant import PlantState, bridge
-from pvlvrt_compliance.plant.protection import NO_TRIP
+from pvlvrt_compliance.plant.plant import PlantState, dc_current
 from pvlvrt_compliance.simulation.columns import phases_at, put_phases
 from pvlvrt_compliance.simulation.door.exchange import (
     ACTING_M,
+    COMMAND,
     COMMANDED_M,
     COMMANDED_U,
     COMMANDS,
+    FIXED,
     IGNORED_AT,
     IGNORED_STATUS,
     LARGEST,
+    LATER,
     LATEST_CALL,
     SEEN_I,
     SEEN_U,
@@ -27,14 +29,15 @@ from pvlvrt_compliance.simulation.door.exchange import (
 )
 from pvlvrt_compliance.simulation.door.native_call import call_address
 from pvlvrt_compliance.simulation.door.ports import PortTable, gather, scatter
-from pvlvrt_compliance.simulation.door.table import DoorTable
+from pvlvrt_compliance.simulation.door.table import HELD_EACH, RUNS_FREE, DoorTable
 from pvlvrt_compliance.simulation.outcome import (
     COMPLETED,
     CONTROLLER_FAILED,
     OUTPUT_NOT_FINITE,
     OUTPUT_OUT_OF_RANGE,
 )
-from pvlvrt_compliance.vectors import Phases, scaled, vector_of
+from pvlvrt_compliance.space_vectors import SQRT2_3
+from pvlvrt_compliance.vectors import Phases, length, rotation, scaled, turned, vector_of
 
 IGNORED = -1
 """No end of a run: a call after a trip that gave no command, or was not made."""
@@ -62,7 +65,7 @@ def put_signals(
     put_phases(x, SEEN_U, seen.u_g_ab, u_zero)
     put_phases(x, SEEN_I, seen.i_ab, 0.0)
     x[SIGNAL.v_dc_v] = seen.v_dc
-    x[SIGNAL.i_dc_a] = bridge(limit_modulation(m), plant.i, plant.v_dc, plant.trip != NO_TRIP).i_dc
+    x[SIGNAL.i_dc_a] = dc_current(plant, m)
     x[SIGNAL.i_pv_a] = seen.i_pv
     put_phases(x, ACTING_M, scaled(1 / _PER_HALF_LINK, m), 0.0)
     x[SIGNAL.enabled] = enabled
@@ -71,10 +74,38 @@ def put_signals(
 
 
 @kernel
+def put_powers(door: DoorTable, G: float) -> None:
+    """Write the active power that there is at an irradiance, and that is asked for: all of it, at most the nominal."""
+    low, high, last = door.irradiance[0], door.irradiance[1], len(door.available) - 1
+    place = last * (G - low) / (high - low) if high > low else 0.0
+    k = min(max(int(place), 0), max(last - 1, 0))
+    before, after = door.available[k], door.available[min(k + 1, last)]
+    p = before + (place - k) * (after - before)
+    door.signals[LATER.p_available_w] = p
+    door.signals[SIGNAL.p_set_w] = min(p, door.signals[FIXED.apparent_power_nominal_va])
+
+
+@kernel
+def put_slow_task(door: DoorTable, k: int) -> None:
+    """Write whether the slow task is due in sample ``k`` of all that the controller sees, from 0."""
+    door.signals[LATER.slow_task_due] = 1.0 if k % door.timing.every == 0 else 0.0
+
+
+@kernel
 def put_commands(x: NDArray[np.float64], m: complex, v_dc: float) -> None:
-    """Write the commands that a modulating signal stands for."""
+    """Write the commands that a modulating signal stands for, of a bridge that is neither tripped nor blocked."""
     put_phases(x, COMMANDED_M, scaled(1 / _PER_HALF_LINK, m), 0.0)
     put_phases(x, COMMANDED_U, scaled(K_PWM * v_dc, m), 0.0)
+    x[COMMAND.u_d_ref_v], x[COMMAND.u_q_ref_v] = SQRT2_3 * K_PWM * v_dc * length(m), 0.0
+    x[COMMAND.angle_rad] = math.atan2(m.imag, m.real)
+    x[COMMAND.trip], x[COMMAND.block], x[COMMAND.restart] = 0.0, 0.0, 0.0
+
+
+@kernel
+def out_of_the_frame(x: NDArray[np.float64]) -> complex:
+    """Voltage vector (V) of what is commanded in a frame, as amplitudes of the phases."""
+    u = scaled(1 / SQRT2_3, complex(x[COMMAND.u_d_ref_v], x[COMMAND.u_q_ref_v]))
+    return turned(u, rotation(x[COMMAND.angle_rad]))
 
 
 @kernel
@@ -105,6 +136,8 @@ def call(door: DoorTable) -> int:
     if not is_well(door, door.address):
         return CONTROLLER_FAILED
     scatter(door.outputs, door.commands)
+    if door.in_a_frame:
+        put_phases(door.commands, COMMANDED_U, out_of_the_frame(door.commands), 0.0)
     if door.in_volts:
         return fault_of(phases_at(door.commands, COMMANDED_U), _U_MOST)
     return fault_of(phases_at(door.commands, COMMANDED_M), _M_MOST)
@@ -140,8 +173,14 @@ def call_or_ignore(door: DoorTable, t: float, is_tripped: bool) -> int:
 
 @kernel
 def hold(door: DoorTable, first: bool) -> int:
-    """Tell a controller that it does not act yet: its outputs are set to what acts in its place."""
-    gather(door.commands[: len(COMMANDS)], held_part(door.outputs))
+    """Tell a controller that it does not act yet, as often as it is told: outputs are set to what acts in its place.
+
+    One that runs free is initialised all the same, but its outputs stay as they are.
+    """
+    if not first and door.timing.hold != HELD_EACH:
+        return COMPLETED
+    if door.timing.hold != RUNS_FREE:
+        gather(door.commands[: len(COMMANDS)], held_part(door.outputs))
     gather(door.signals, door.inputs)
     if first and door.first_address != 0 and not is_well(door, door.first_address):
         return CONTROLLER_FAILED

@@ -9,9 +9,9 @@ from pvlvrt_compliance.plant.grid import source_at
 from pvlvrt_compliance.plant.plant import PlantParams, PlantState, PlantTables, as_at, observe
 from pvlvrt_compliance.plant.protection import NO_TRIP, RelayState
 from pvlvrt_compliance.simulation.columns import FOREIGN, FURTHER
-from pvlvrt_compliance.simulation.door.call import call, hold, put_commands, put_signals
+from pvlvrt_compliance.simulation.door.call import call, hold, put_commands, put_powers, put_signals, put_slow_task
 from pvlvrt_compliance.simulation.door.exchange import COMMANDS, LATEST_CALL
-from pvlvrt_compliance.simulation.door.table import DoorTable, Timing
+from pvlvrt_compliance.simulation.door.table import DoorTable
 from pvlvrt_compliance.simulation.outcome import COMPLETED
 from pvlvrt_compliance.simulation.sample import Sample
 from pvlvrt_compliance.vectors import Rotation, rotation, turned
@@ -29,6 +29,7 @@ def turned_state(x: PlantState, by: Rotation) -> PlantState:
         trip=x.trip,
         t_trip=x.t_trip,
         closed=x.closed,
+        blocked=x.blocked,
         mean=x.mean,
     )
 
@@ -56,6 +57,8 @@ def synchronised_controller(
         door.progress[LATEST_CALL] = t - ahead
         then, m_then = turned_state(plant, back), turned(m, back)
         seen = Measured(u_g_ab=turned(y.u_ab, back), i_ab=then.i, v_dc=then.v_dc, i_pv=then.i_pv)
+        put_powers(door, now.G)
+        put_slow_task(door, k)
         put_signals(door.signals, k * timing.sample_time, seen, 0.0, then, m_then, now.G, 0.0)
         put_commands(door.commands, m_then, then.v_dc)
         status = hold(door, k == 0)
@@ -67,10 +70,13 @@ def synchronised_controller(
 
 
 @kernel
-def put_sample(x: NDArray[np.float64], sample: Sample, plant: PlantState, timing: Timing) -> None:
+def put_sample(door: DoorTable, sample: Sample, plant: PlantState) -> None:
     """Write the signals of a sample in which the controller acts, by its own clock."""
-    since = (sample.k + timing.held) * timing.sample_time
-    put_signals(x, since, sample.seen, sample.u_zero, plant, sample.m, sample.G, 1.0)
+    k = sample.k + door.timing.held
+    since = k * door.timing.sample_time
+    put_powers(door, sample.G)
+    put_slow_task(door, k)
+    put_signals(door.signals, since, sample.seen, sample.u_zero, plant, sample.m, sample.G, 1.0)
 
 
 @kernel
@@ -87,6 +93,7 @@ def untripped(x: PlantState, relay: RelayState) -> PlantState:
         trip=NO_TRIP,
         t_trip=0.0,
         closed=True,
+        blocked=x.blocked,
         mean=x.mean,
     )
 

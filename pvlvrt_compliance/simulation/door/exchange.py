@@ -24,20 +24,35 @@ class ChangingSignals(NamedTuple):
     enabled: int
     connected: int
     irradiance_w_m2: int
+    p_set_w: int
 
 
 class FixedSignals(NamedTuple):
     """What it can be given that stays as it is in a run."""
 
-    p_set_w: int
     q_set_var: int
     frequency_nominal_hz: int
     apparent_power_nominal_va: int
     voltage_nominal_v: int
 
 
+class LaterSignals(NamedTuple):
+    """What came later and stands behind all others: what a class is told by their order stays. The first two change."""
+
+    p_available_w: int
+    slow_task_due: int
+    v_dc_nominal_v: int
+    filter_inductance_h: int
+    filter_resistance_ohm: int
+    dc_link_capacitance_f: int
+
+
 class Commands(NamedTuple):
-    """What it can command: u_inv = m v_DC / 2, phase to the middle of the link, or that voltage itself (V)."""
+    """What it can command: u_inv = m v_DC / 2, phase to the middle of the link, or that voltage itself (V); switches.
+
+    The voltage by phase, or in a frame: u_a = u_d cos(angle) - u_q sin(angle), phases b and c a third of a turn behind.
+    Switches are on from 0.5: open the breaker; turn no device on; go on after having turned none on.
+    """
 
     m_a: int
     m_b: int
@@ -45,12 +60,20 @@ class Commands(NamedTuple):
     u_a_ref_v: int
     u_b_ref_v: int
     u_c_ref_v: int
+    trip: int
+    block: int
+    restart: int
+    u_d_ref_v: int
+    u_q_ref_v: int
+    angle_rad: int
 
 
 SIGNAL = numbered(ChangingSignals)
+FIXED = numbered(FixedSignals, len(SIGNAL))
+LATER = numbered(LaterSignals, len(SIGNAL) + len(FIXED))
 COMMAND = numbered(Commands)
 
-SIGNALS = (*ChangingSignals._fields, *FixedSignals._fields)
+SIGNALS = (*ChangingSignals._fields, *FixedSignals._fields, *LaterSignals._fields)
 """What a controller can be given, in the order of the signals that its input ports are mapped to."""
 
 COMMANDS = Commands._fields
@@ -63,7 +86,13 @@ ACTING_M = PhasePlaces(SIGNAL.m_a, SIGNAL.m_b, SIGNAL.m_c)
 
 COMMANDED_M = PhasePlaces(COMMAND.m_a, COMMAND.m_b, COMMAND.m_c)
 COMMANDED_U = PhasePlaces(COMMAND.u_a_ref_v, COMMAND.u_b_ref_v, COMMAND.u_c_ref_v)
-"""The two kinds of commands."""
+"""The two kinds of voltages that are commanded."""
+
+SWITCHES = ("trip", "block", "restart")
+"""Commands besides those: who gives none of them never trips and never blocks."""
+
+ON = 0.5
+"""From which on a switch is on: halfway between 0 and 1."""
 
 LARGEST = {"m_a": 10.0, "u_a_ref_v": 1e5}
 """Largest command of either kind that is taken for one (-, V)."""

@@ -6,6 +6,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.kernel import cached_kernel, kernel
+from pvlvrt_compliance.simulation.streaming.averages import components_into, turned_vector
+from pvlvrt_compliance.simulation.streaming.blocks import (
+    LENGTH,
+    Rows,
+    first_block,
+    integrated,
+    means_into,
+    memory_for,
+    next_block,
+    turns_into,
+)
 from pvlvrt_compliance.simulation.streaming.windows import (
     MOST_TURNS,
     SILENT,
@@ -36,7 +47,12 @@ def angle_of(x: float, y: float) -> float:
     """Angle of x + jy."""
     if not abs(y) < SMALL * x:
         return math.atan2(y, x)
-    r = y / x
+    return small_angle_of(y / x)
+
+
+@kernel
+def small_angle_of(r: float) -> float:
+    """Angle of 1 + jr, r being small."""
     q = r * r
     return r * (1.0 - q * (1.0 / 3.0 - q * (1.0 / 5.0 - q * (1.0 / 7.0 - q * (1.0 / 9.0 - q / 11.0)))))
 
@@ -156,18 +172,94 @@ def frequency_pass(
     return first
 
 
+@cached_kernel
+def steady_pass(
+    abc: ThreePhase,
+    dt: float,
+    nominal: float,
+    floor: float,
+    steady: Samples,
+    work: Rows,
+    memory: Rows,
+    stirred: Flags,
+    found: Samples,
+) -> tuple[int, bool]:
+    """As `frequency_pass` where the nominal frequency is assumed throughout.
+
+    Returns, too, whether all samples are finite; all of ``found`` and ``stirred`` is written.
+
+    Parameters
+    ----------
+    steady : array, shape (1,)
+        The nominal frequency (Hz).
+    work : array, shape (6, LENGTH)
+        Of no value before or after.
+    memory : array, shape (4, room)
+        As `memory_for` gives it: integrals of a phasor's two parts, and these themselves.
+    """
+    n, first, held = len(found), len(found), 0.0
+    x, y, along, across, least, angle = work[0], work[1], work[2], work[3], work[4], work[5]
+    x_sum = y_sum = 0.0
+    b = first_block(steady, dt, n)
+    steps = round(b.window.samples)
+    per_turn = 1.0 / (TWO_PI * dt * steps)
+    while b.samples > 0:
+        end = b.at + b.samples
+        turns_into(b, x, y)
+        components_into(abc, b, along, across, angle)
+        turned_vector(along, across, 1.0, x, y, memory[0, b.at : end], memory[1, b.at : end])
+        x_sum, y_sum = integrated(memory[0, b.at : end], memory[1, b.at : end], x_sum, y_sum)
+        means_into(b, memory[0], 2.0, memory[2, b.at : end])
+        means_into(b, memory[1], 2.0, memory[3, b.at : end])
+        known = min(max(steps - b.begin, 0), b.samples)  # samples that have one a cycle ago
+        here, ago = b.at + known, b.at + known - steps
+        turned_since(memory[2:, here:end], memory[2:, ago : end - steps], along, across, least, angle)
+        for j in range(b.samples):
+            k, at = b.begin + j, j - known
+            if at >= 0 and least[at] >= floor * floor:
+                if not abs(across[at]) < SMALL * along[at]:
+                    angle[at] = math.atan2(across[at], along[at])
+                value = nominal + angle[at] * per_turn
+                if math.isfinite(value):
+                    held = min(max(value, LOWEST * nominal), HIGHEST * nominal)
+                    first = min(first, k)
+            found[k] = held
+            stirred[k] = abs(held - nominal) > STILL * nominal
+        b = next_block(b, steady, dt, n, memory)
+    if first < n:
+        found[:first] = found[first]
+        stirred[:first] = stirred[first]
+    return first, math.isfinite(x_sum + y_sum)
+
+
+@kernel
+def turned_since(now: Rows, ago: Rows, along: Samples, across: Samples, least: Samples, angle: Samples) -> None:
+    """Compare phasors (two rows) with those of a cycle ago: product, lesser square, and the angle where it is small."""
+    x, y, x_ago, y_ago = now[0], now[1], ago[0], ago[1]
+    for j in range(now.shape[1]):
+        along[j] = x[j] * x_ago[j] + y[j] * y_ago[j]
+        across[j] = y[j] * x_ago[j] - x[j] * y_ago[j]
+    for j in range(now.shape[1]):
+        least[j] = min(x[j] * x[j] + y[j] * y[j], x_ago[j] * x_ago[j] + y_ago[j] * y_ago[j])
+    for j in range(now.shape[1]):
+        angle[j] = small_angle_of(across[j] / along[j])
+
+
 @SILENT
 def tracked_frequency(segment: Segment, nominal_hz: float, kind: str = "u", floor: float = 1.0) -> Samples:
     """Frequency of the positive sequence at each sample: `measure.tracking.tracked_frequency`."""
     abc, n = three_phase(segment, kind), len(segment)
-    found, stirred = np.full(n, nominal_hz), np.ones(n, dtype=np.uint8)
     ring = ring_for(np.array([LOWEST * nominal_hz, HIGHEST * nominal_hz]), segment.dt_s, 7)
-    first = since = 0
-    for _ in range(PASSES):
+    found, stirred, steady = np.empty(n), np.empty(n, dtype=np.uint8), np.array([nominal_hz])
+    memory, work = memory_for(steady, segment.dt_s, 4), np.empty((6, LENGTH))
+    first, is_finite = steady_pass(abc, segment.dt_s, nominal_hz, floor, steady, work, memory, stirred, found)
+    since = first
+    for _ in range(1, PASSES):
+        if first == n or not stirred.any():
+            break
         first = frequency_pass(abc, segment.dt_s, nominal_hz, floor, ring, found.copy(), stirred, found, first)
-        if first == n:
-            return np.full(n, np.nan)
         since = max(since, first)
-    found[:since] = np.nan
-    found[np.logical_or.accumulate(~np.isfinite(sum(abc)))] = np.nan
+    found[: n if first == n else since] = np.nan
+    if not is_finite:
+        found[int(np.isfinite(sum(abc)).argmin()) :] = np.nan
     return found

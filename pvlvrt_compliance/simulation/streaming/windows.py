@@ -1,6 +1,6 @@
 """What compiled series are made of: the cycle that ends at a sample, and the turn by an angle that goes on.
 
-Sums run on from sample to sample; those of the last cycle lie in a ring, a row a sample.
+Where each sample has a cycle of its own, sums of the last one lie in a ring, a row a sample.
 """
 
 import math
@@ -113,15 +113,20 @@ def three_phase(segment: Segment, kind: str) -> ThreePhase:
     return ThreePhase(*(np.ascontiguousarray(x, dtype=np.float64) for x in segment.three_phase(kind)))
 
 
-def ring_for(frequency_hz: Samples, dt_s: float, columns: int) -> NDArray[np.float64]:
-    """Memory for the longest cycle of some frequencies: rows, and as many columns as asked for.
+def longest_cycle(frequency_hz: Samples, dt_s: float) -> float:
+    """Sampling steps of the longest cycle of some frequencies.
 
     Raises
     ------
     MeasurementError
-        When a cycle has fewer than two samples.
+        When the shortest has fewer than two.
     """
-    shortest, longest = (1 / (f * dt_s) for f in (frequency_hz.max(), frequency_hz.min()))
+    shortest, longest = (1 / (f * dt_s) for f in (float(frequency_hz.max()), float(frequency_hz.min())))
     if math.ceil(shortest - ROUND_OFF) < 2:
         raise MeasurementError("fewer than two samples a cycle")
-    return np.empty((1 << math.ceil(math.log2(longest + 6)), columns))
+    return longest
+
+
+def ring_for(frequency_hz: Samples, dt_s: float, columns: int) -> NDArray[np.float64]:
+    """Memory for the longest cycle of some frequencies: rows, and as many columns as asked for; errors as there."""
+    return np.empty((1 << math.ceil(math.log2(longest_cycle(frequency_hz, dt_s) + 6)), columns))

@@ -14,8 +14,9 @@ from pvlvrt_compliance.results import (
     Verdict,
 )
 from pvlvrt_compliance.results.changes import Change, Key, by_key, change_of, named
-from pvlvrt_compliance.study.baseline.entries import Baseline, Entry, now_in_words, rounded_margin, shown
+from pvlvrt_compliance.study.baseline.entries import Baseline, Entry, now_in_words, rounded_margin
 from pvlvrt_compliance.study.baseline.reading import BaselineFile
+from pvlvrt_compliance.texts import printable
 
 UPDATE = "pvlvrt-check baseline update"
 NO_SUCH_TEST = "no such test"
@@ -97,7 +98,7 @@ def _marks(entry: Entry, verdict: Verdict, tolerance: float) -> dict[str, object
         return {}
     if why := _not_comparable(entry, verdict):
         return {"worse": f"{beside}; the two cannot be compared: {why} ({UPDATE} writes the line anew)"}
-    return {"known": True, "known_reason": entry.reason} if verdict.status is Status.FAIL else {}
+    return {"known": True, "known_reason": printable(entry.reason)} if verdict.status is Status.FAIL else {}
 
 
 def _not_comparable(entry: Entry, verdict: Verdict) -> str:
@@ -133,4 +134,4 @@ def _gone(baseline: Baseline, results: Results, found: Collection[Key], is_gone:
 
 
 def _note(key: Key, entry: Entry, now: str) -> BaselineNote:
-    return BaselineNote(test=shown(key.test), check=shown(key.check), was=entry.in_words, now=now)
+    return BaselineNote(test=key.test, check=key.check, was=entry.in_words, now=now)

@@ -5,10 +5,10 @@ from collections.abc import Mapping
 from decimal import Decimal
 from typing import NamedTuple
 
-from pvlvrt_compliance.data.syntax import CONTROL
 from pvlvrt_compliance.results import Status, Verdict
 from pvlvrt_compliance.results.changes import Earlier, Key, scale_of
 from pvlvrt_compliance.results.digits import digits_of
+from pvlvrt_compliance.texts import one_line
 
 KEPT = (Status.FAIL, Status.PASS)
 """Verdicts that an entry may have. An error and what could not be judged have none: they are never known."""
@@ -120,9 +120,4 @@ def now_in_words(verdict: Verdict) -> str:
 
 def said(status: Status, margin: str) -> str:
     """A verdict with its margin, if it has one."""
-    return ", ".join(filter(None, [status.value.replace("_", " "), shown(margin)]))
-
-
-def shown(name: str) -> str:
-    """A name of a file as a terminal may be shown it."""
-    return CONTROL.sub("?", name)
+    return ", ".join(filter(None, [status.value.replace("_", " "), one_line(margin)]))

@@ -4,15 +4,15 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from pvlvrt_compliance.data.syntax import CONTROL
 from pvlvrt_compliance.data.text import LARGEST_FILE_MIB
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.results.files import RESULTS
 from pvlvrt_compliance.results.reading import read_results
-from pvlvrt_compliance.study.baseline.entries import Baseline, shown
+from pvlvrt_compliance.study.baseline.entries import Baseline
 from pvlvrt_compliance.study.baseline.reading import digest_of, read_baseline
 from pvlvrt_compliance.study.baseline.text import too_large, written
 from pvlvrt_compliance.study.baseline.updating import Kind, Update, updated
+from pvlvrt_compliance.texts import CONTROL, one_line
 
 _MOST_TOLD, _MOST_NAMED = 100, 5
 
@@ -71,7 +71,7 @@ def _said(file: str, done: Update, is_changed: bool) -> Iterator[str]:
         tests = "its test was" if done.not_run == 1 else "their tests were"
         yield f"kept: {_count(done.not_run, 'line')}, {tests} not run (--prune drops them)"
     if done.unjudged:
-        places = ", ".join(shown(f"{check} in {test}") for test, check in done.unjudged[:_MOST_NAMED])
+        places = ", ".join(one_line(f"{check} in {test}") for test, check in done.unjudged[:_MOST_NAMED])
         more = f" and {len(done.unjudged) - _MOST_NAMED} more" if len(done.unjudged) > _MOST_NAMED else ""
         yield f"never known, since it could not be judged: {places}{more}"
     if done.without_reason:

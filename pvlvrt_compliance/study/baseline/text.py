@@ -12,12 +12,12 @@ import re
 from collections.abc import Iterator
 from decimal import Decimal
 
-from pvlvrt_compliance.data.syntax import CONTROL
 from pvlvrt_compliance.data.text import LARGEST_FILE_BYTES
 from pvlvrt_compliance.errors import did_you_mean
 from pvlvrt_compliance.results import Status
 from pvlvrt_compliance.results.changes import Key
 from pvlvrt_compliance.study.baseline.entries import KEPT, Baseline, Entry
+from pvlvrt_compliance.texts import CONTROL
 
 VERSION = 1
 
@@ -35,7 +35,8 @@ _STEP = 8  # by which a column moves on in the one line that has no room in it
 
 _NAME = re.compile(r'(?![<=>|]{7}$)[^\s#"]+')
 _WORD = re.compile(r'"(?:[^"\\]|\\.)*"|[^\s"#]+')
-_NUMBERED = re.compile(r"\([0-9]+\)")
+_MOST_DIGITS = 9  # of a whole number: no other is one of ours, and Python makes none of some thousand
+_NUMBERED = re.compile(rf"\([0-9]{{1,{_MOST_DIGITS}}}\)")
 _MARGIN = re.compile(r"[+-]?[0-9]+(?:\.[0-9]+)?")
 _CONFLICT = re.compile(r"(?:<{7}|={7}|>{7}|\|{7})(?: |$)")
 _SETTLE = (
@@ -123,8 +124,8 @@ def _problems_of_head(line: str) -> Iterator[str]:
             f'no baseline: the first line must be "{HEAD}"; write it there, or, where nothing of the file is needed,'
             " remove it and run pvlvrt-check baseline update"
         )
-    elif int(version) != VERSION:
-        yield f"format {version} is not known to this version of the program, which reads {VERSION}"
+    elif len(version) > _MOST_DIGITS or int(version) != VERSION:
+        yield f"format {version:.{_MOST_DIGITS}} is not known to this version of the program, which reads {VERSION}"
 
 
 def _entry(line: str, above: tuple[str, ...]) -> Entry:

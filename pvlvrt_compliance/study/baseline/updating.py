@@ -7,7 +7,8 @@ from typing import NamedTuple
 from pvlvrt_compliance.results import JUDGED, Results, Status, Verdict
 from pvlvrt_compliance.results.changes import Key, by_key
 from pvlvrt_compliance.study.baseline.applying import NO_SUCH_CHECK, is_judged_in, says_nothing
-from pvlvrt_compliance.study.baseline.entries import KEPT, Baseline, Entry, entry_of, now_in_words, rounded_off, shown
+from pvlvrt_compliance.study.baseline.entries import KEPT, Baseline, Entry, entry_of, now_in_words, rounded_off
+from pvlvrt_compliance.texts import one_line
 
 NOT_RUN = "not in this run"
 
@@ -32,7 +33,7 @@ class Step(NamedTuple):
     @property
     def in_words(self) -> str:
         """A line: ``+ current_limit in p.VD1: fail, -0.086 pu``."""
-        place = shown(f"{self.key.check} in {self.key.test}")
+        place = one_line(f"{self.key.check} in {self.key.test}")
         if self.now is None:
             reason = f" # {self.was.reason}" if self.was and self.was.reason else ""
             return f"- {place}: {self.was.in_words if self.was else ''}; now {self.why}{reason}"

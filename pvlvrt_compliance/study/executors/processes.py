@@ -8,6 +8,7 @@ import os
 import pickle
 import subprocess
 import threading
+import time
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -17,6 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pvlvrt_compliance.controllers.process import child
 from pvlvrt_compliance.controllers.process.command import at_end
+from pvlvrt_compliance.controllers.process.family import is_stopped
 from pvlvrt_compliance.errors import LostError
 from pvlvrt_compliance.study.executors.arranging import Arranged
 from pvlvrt_compliance.study.executors.executor import Finished
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 _LOOK_S = 1.0  # Windows hears no Ctrl-C while a lock is waited for
+_STOPPED_S = 5.0  # one that a scheduler has stopped with all others goes on with them
+_PATIENCE_S = 5.0  # with a process that has said half a word
 
 
 class _Lost(NamedTuple):
@@ -96,6 +100,8 @@ class _Worker:
     def __init__(self, start: bytes, heard: "SimpleQueue[tuple[_Worker, Any]]", echo: child.Echo) -> None:
         self.unit: int | None = None
         self.has_begun = False
+        self._why = ""  # it was ended here
+        self._stopped_since: float | None = None
         self._start = start
         self._process = child.start(
             "pvlvrt_compliance.study.executors.worker", stderr=subprocess.PIPE, env={**_ONE_THREAD, **os.environ}
@@ -124,13 +130,32 @@ class _Worker:
         """End it, and whatever it has started."""
         child.end(self._process, listens=self.has_begun)
 
+    def end_if_stopped(self) -> None:
+        """End it if it has been stopped for a while: a controller can do that, and it would never go on."""
+        now = time.monotonic()
+        if not is_stopped(self._process.pid):
+            self._stopped_since = None
+        elif self._stopped_since is None:
+            self._stopped_since = now
+        elif now - self._stopped_since > _STOPPED_S:
+            self._kill("was stopped (SIGSTOP)")  # what it has started sees the end of its own input
+
+    def _kill(self, why: str) -> None:
+        self._why = self._why or f"the process that ran it {why}"
+        self._process.kill()
+
     def _listen(self, heard: "SimpleQueue[tuple[_Worker, Any]]") -> None:
         assert self._process.stdout is not None
         with self._process.stdout as answers:
             while True:
                 try:
                     said = pickle.load(answers)
-                except Exception:  # it has ended, in the middle of a word perhaps
+                except EOFError:  # it has ended
+                    break
+                except Exception:  # it has ended in the middle of a word, or the word is of somebody else
+                    said = None
+                if not isinstance(said, (Begun, Finished, UnitEnded, Failed)):
+                    self._end_of_sense()
                     break
                 self.has_begun = True
                 heard.put((self, said))
@@ -138,7 +163,15 @@ class _Worker:
 
     def _last_words(self) -> str:
         status, said = self._process.wait(), self._said()
-        return f"{_in_words(status)}\nit had printed: {said}" if said else _in_words(status)
+        why = self._why or _in_words(status)
+        return f"{why}\nit had printed: {said}" if said else why
+
+    def _end_of_sense(self) -> None:
+        """See to its end, where what it says is nothing that can be understood."""
+        try:
+            self._process.wait(_PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            self._kill("said what it never says")
 
 
 class _Crew:
@@ -152,6 +185,7 @@ class _Crew:
         self._workers: list[_Worker] = []
         self._has_begun = False
         self._losses = 0
+        self._looked_s = 0.0
 
     def begin(self, arranged: Arranged) -> None:
         """Give each worker that has no unit one, as long as there are units."""
@@ -172,6 +206,10 @@ class _Crew:
     def hear(self) -> tuple[_Worker, Any]:
         """What one says next."""
         while True:
+            if time.monotonic() > self._looked_s + _LOOK_S:
+                self._looked_s = time.monotonic()
+                for each in self._workers:
+                    each.end_if_stopped()
             try:
                 worker, said = self._heard.get(timeout=_LOOK_S)
             except Empty:

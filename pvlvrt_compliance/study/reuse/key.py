@@ -1,6 +1,5 @@
 """The key of a record: a digest of everything that decides it. Two simulations of one key give the same bytes."""
 
-import hashlib
 import json
 import os
 import platform
@@ -14,22 +13,18 @@ from pydantic import BaseModel
 
 import pvlvrt_compliance
 from pvlvrt_compliance.controllers.mapping.file import load_mapping
+from pvlvrt_compliance.ordinary_file import NotOrdinaryError, content_of
 from pvlvrt_compliance.scenario.events import Recording
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.parameters import Parameters
-from pvlvrt_compliance.waveforms.recording import files_of
+from pvlvrt_compliance.study.sources import digest_of_content, digest_of_file, of_records
+from pvlvrt_compliance.waveforms.recording import LARGEST_RECORD_BYTES, files_of
 
 if TYPE_CHECKING:
     from pvlvrt_compliance.controllers.simulator import ForeignSimulator
 
-ROOMS = (
-    *("compiled", "control", "controllers", "data", "hardware", "plant", "scenario", "simulation", "waveforms"),
-    "",
-)
-"""Folders of the package whose modules may decide a record, plain Python included; the last one is its root."""
-
-_LIBRARIES = ("comtrade", "fmpy", "llvmlite", "numba", "numpy", "scipy")
-"""Other packages that compute, or read what is computed with."""
+_LIBRARIES = ("fmpy", "llvmlite", "numba", "numpy", "scipy")
+"""Other packages that compute."""
 
 _PLACES = {"events": {"__all__": {"file"}}}
 """Where recordings lie is no part of a scenario's key: what is in them is."""
@@ -66,12 +61,12 @@ def key_of(scenario: Scenario, parameters: Parameters, controller: object, surro
 def digest_of(parts: object) -> str:
     """Digest of plain values (64 hexadecimal digits)."""
     text = json.dumps(parts, sort_keys=True, ensure_ascii=False)
-    return hashlib.blake2b(text.encode("utf-8", "surrogatepass"), digest_size=32).hexdigest()
+    return digest_of_content(text.encode("utf-8", "surrogatepass"))
 
 
 def recordings_parts(scenario: Scenario) -> list[tuple[str, str]]:
     """Kind and digest of every file of the recordings that a scenario plays back, in their order; not their places."""
-    recorded = (Path(event.file) for event in scenario.events if isinstance(event, Recording))
+    recorded = (event.located()[0] for event in scenario.events if isinstance(event, Recording))
     return [(file.suffix, _content(file)) for recording in recorded for file in files_of(recording)]
 
 
@@ -96,8 +91,10 @@ def controller_parts(controller: "ForeignSimulator | None") -> object:
         "parameters": controller.parameter_values(),
         "given": controller.given,
         "sample_time_s": it.sample_time_s,
-        "mapping": _content(Path(mapping)) if mapping else None,
-        "files": {file.relative_to(folder).as_posix(): _content(file) for file in (listed.listed if listed else ())},
+        "mapping": digest_of_file(Path(mapping)) if mapping else None,
+        "files": {
+            file.relative_to(folder).as_posix(): digest_of_file(file) for file in (listed.listed if listed else ())
+        },
     }
 
 
@@ -114,19 +111,12 @@ def surroundings_parts() -> dict[str, Any]:
 
     return {
         "version": pvlvrt_compliance.__version__,
-        "sources": sources_parts(Path(pvlvrt_compliance.__file__).parent),
+        "sources": of_records(),
         "compiled": sources_of(run).key,  # of the loop, of versions, and of the processor
-        "compiler": [compiler_parts(os.environ), _content(Path(_COMPILERS_FILE))],
+        "compiler": [compiler_parts(os.environ), digest_of_file(Path(_COMPILERS_FILE))],
         "libraries": dict(_versions(_LIBRARIES)),
         "system": [platform.system(), *platform.libc_ver(), platform.win32_ver()[1], platform.mac_ver()[0]],
     }
-
-
-def sources_parts(package: Path) -> dict[str, str]:
-    """Digests of the modules of `ROOMS`, by their places in the package."""
-    rooms = [package / room for room in ROOMS]
-    files = sorted(file for room in rooms for file in (room.rglob("*.py") if room != package else room.glob("*.py")))
-    return {file.relative_to(package).as_posix(): _content(file) for file in files}
 
 
 def compiler_parts(environment: Mapping[str, str]) -> dict[str, str]:
@@ -153,6 +143,6 @@ def _told(model: BaseModel, exclude: Any = None) -> list[dict[str, Any]]:
 def _content(file: Path) -> str:
     """Digest of a file (hexadecimal); empty where it cannot be read, of which the simulation then says more."""
     try:
-        return hashlib.blake2b(file.read_bytes(), digest_size=32).hexdigest()
-    except OSError:
+        return digest_of_content(content_of(file, LARGEST_RECORD_BYTES))
+    except NotOrdinaryError:
         return ""

@@ -17,6 +17,7 @@ DEFAULT_SIZE = "10GB"
 """Room for the records of all profiles that ship, which take 7 GB, with something over (chosen)."""
 
 _BYTES_PER_GB = 10**9
+_MOST_GB = 1e6  # chosen: no folder of one machine has a petabyte
 
 
 def limit_of(asked: "Asked", spell: "Spell") -> int:
@@ -34,8 +35,8 @@ def limit_of(asked: "Asked", spell: "Spell") -> int:
         raise UsageError(f"{spell('reuse')} {asked.reuse}: {said}")
     given = DEFAULT_SIZE if asked.reuse_size is None else str(asked.reuse_size)
     size = parse_quantity(given, spell("reuse_size"), DATA_SIZE)
-    if size <= 0:
-        raise UsageError(f"{spell('reuse_size')}: {asked.reuse_size} must be above zero")
+    if not 0 < size <= _MOST_GB:
+        raise UsageError(f"{spell('reuse_size')}: {asked.reuse_size} must be above zero and at most {_MOST_GB:g} GB")
     return round(size * _BYTES_PER_GB)
 
 

@@ -6,6 +6,7 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.ordinary_file import NotOrdinaryError, TooLargeError, content_of
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.results import TestResult, Verdict
 from pvlvrt_compliance.results.files import FOLDER, RESULTS, WAVEFORMS
@@ -16,6 +17,7 @@ from pvlvrt_compliance.study.provenance import created_at, provenance
 from pvlvrt_compliance.study.selection import row_of_further
 from pvlvrt_compliance.study.shards.part import Head, Part
 from pvlvrt_compliance.study.work import Work
+from pvlvrt_compliance.waveforms.recording import LARGEST_RECORD_BYTES
 
 _OF_ONE_RUN = ("created", "command", "controller_notes", "files", "reuse", "settings")
 """Of the provenance: what may differ between parts, or is compared by itself."""
@@ -25,7 +27,7 @@ _OF_THE_PART = ("shard", "output", "exit_zero", "quiet", "verbose", "reuse", "re
 
 _MOST_NAMED = 10  # of parts that are missing
 
-_SHARD, _OUTPUT, _EXIT_ZERO = "--shard", "--output", "--exit-zero"
+_SHARD, _OUTPUT, _EXIT_ZERO, _FORMAT = "--shard", "--output", "--exit-zero", "--format"
 
 
 class Whole(NamedTuple):
@@ -102,14 +104,21 @@ def _files(part: Part, waveforms: str | None) -> dict[str, bytes]:
     if waveforms is None:
         return {}
     record = part.folder / waveforms
-    files = (path for path in record.parent.iterdir() if path.stem == record.stem)
+    found = {}
     try:
-        return {path.relative_to(part.folder).as_posix(): path.read_bytes() for path in sorted(files)}
+        for path in sorted(path for path in record.parent.iterdir() if path.stem == record.stem):
+            name = path.relative_to(part.folder).as_posix()
+            found[name] = content_of(path, LARGEST_RECORD_BYTES, part.folder)
     except OSError as error:
         raise UsageError(f"{error.filename}: cannot be read: {error.strerror or error}") from None
+    except TooLargeError:
+        raise UsageError(f"{path}: larger than {LARGEST_RECORD_BYTES >> 20} MiB, which a record may have") from None
+    except NotOrdinaryError as error:
+        raise UsageError(f"{path}: {error}") from None
+    return found
 
 
-def whole_of(parts: Sequence[Part], output: str) -> Whole:
+def whole_of(parts: Sequence[Part], output: str, formats: Sequence[str] = ()) -> Whole:
     """The run that parts are of.
 
     Parameters
@@ -117,6 +126,8 @@ def whole_of(parts: Sequence[Part], output: str) -> Whole:
     parts : sequence of Part
     output : str
         Where its files are to go, for the command that is recorded.
+    formats : sequence of str
+        Names of those that are written besides what the parts were asked for.
 
     Raises
     ------
@@ -131,13 +142,17 @@ def whole_of(parts: Sequence[Part], output: str) -> Whole:
     for part in parts:
         _refuse_lost_records(part)
     given = {name: value for name, value in first.head.given.items() if name not in _OF_THE_PART}
+    further = tuple(name for name in formats if name not in given.get("formats", ()))
+    if further:
+        given["formats"] = (*given.get("formats", ()), *further)
     names = {field.name for field in fields(Asked)}
-    job = make_job(Asked(**{name: value for name, value in given.items() if name in names}), _spell)
+    asked = Asked(**{name: value for name, value in given.items() if name in names})
+    job = make_job(asked, _spell, is_simulated=False)
     recorded = _recorded(job, parts)
     _refuse_versions(job, first, recorded)
     return Whole(
         job=job if recorded is None else replace(job, controller=recorded.spec),
-        command=_command(first.head, output),
+        command=(*_command(first.head, output), *(word for name in further for word in (_FORMAT, name))),
         settings=first.head.settings,
         others={name: value for name, value in given.items() if name not in names},
         executor=FromParts(parts),

@@ -12,7 +12,7 @@ from pvlvrt_compliance.controllers.library.info import info_of, settings_of
 from pvlvrt_compliance.controllers.library.instance import LibraryInstance
 from pvlvrt_compliance.controllers.library.layout import ModelInfo
 from pvlvrt_compliance.simulation.door.blocks import port_table
-from pvlvrt_compliance.simulation.door.exchange import SIGNALS
+from pvlvrt_compliance.simulation.door.exchange import COMMANDS, SIGNALS
 from pvlvrt_compliance.simulation.door.native_call import FUNCTION
 from pvlvrt_compliance.simulation.door.ports import gather, number_at, put_number
 from pvlvrt_compliance.units import Nominal
@@ -127,7 +127,7 @@ def test_instances_have_their_own_globals(compiled):
         opened = door.open(NOMINAL)
         for _ in range(3):
             FUNCTION(opened.address)(opened.argument)
-        (calls,) = [e.byte for e in opened.outputs.elements if e.signal == len(opened.recorded) + 5]
+        (calls,) = [e.byte for e in opened.outputs.elements if e.signal == len(COMMANDS) + len(opened.recorded) - 1]
         counts.append(opened.outputs.memory[calls : calls + 8].view(np.float64)[0])
         door.close()
     assert counts == [3.0, 3.0]

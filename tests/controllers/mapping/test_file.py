@@ -97,9 +97,9 @@ def test_example_on_the_page_is_a_mapping_file(tmp_path):
     inputs = [*(port(name) for name in names), port("V_abc", width=3), port("y", width=4)]
     mapped = map_inputs(inputs, load_mapping(file), NOMINAL)
     assert mapped.unmapped == ("y[0]", "y[1]", "y[2]")
-    assert map_outputs([port("ma"), port("Ea"), port("Pout", "W")], load_mapping(file), NOMINAL).recorded == (
-        "p_out_w",
-    )
+    assert map_outputs(
+        [port("ma"), port("Ea"), port("run"), port("Pout", "W")], load_mapping(file), NOMINAL
+    ).recorded == ("p_out_w",)
 
 
 def test_files_that_a_mapping_lists(tmp_path):
@@ -128,6 +128,7 @@ def test_files_that_a_mapping_lists(tmp_path):
         ('["/etc/passwd"]', "files[0]: '/etc/passwd' must be the name of a file in the folder"),
         ('[""]', "files[0]: '' must be the name of a file"),
         ('["link.csv"]', "files[0]: link.csv is a link to a file outside of the folder of the mapping"),
+        ('["hole*"]', "files[0]: hole.bin is larger than 256 MiB"),
         ('"gains.csv"', "my.mapping.toml:1: files: must be a list"),
     ],
 )
@@ -137,4 +138,13 @@ def test_files_that_cannot_be_listed(tmp_path, files, words):
     (tmp_path / "mine" / "gains.csv").write_text("")
     (tmp_path / "other.csv").write_text("")
     (tmp_path / "mine" / "link.csv").symlink_to(tmp_path / "other.csv")
+    with (tmp_path / "mine" / "hole.bin").open("wb") as hole:
+        hole.truncate(1 << 40)
     assert words in refused(tmp_path / "mine", f"files = {files}\n")
+
+
+def test_a_whole_number_of_5000_digits(tmp_path):
+    """One line with file, line and key, as of any file that people write."""
+    (tmp_path / "ports.toml").write_text(f"[inputs.u]\nsignal = 'u_a_v'\nsign = {'9' * 5000}\n", "utf-8")
+    with pytest.raises(DoorError, match=r"ports.toml:3: inputs.u.sign: not TOML: a whole number of more than 64 bits"):
+        load_mapping(tmp_path / "ports.toml")

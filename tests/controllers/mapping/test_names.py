@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ports import port
-from pvlvrt_compliance.controllers.mapping.names import guess_input
+from pvlvrt_compliance.controllers.mapping.names import guess_input, guess_output
 from pvlvrt_compliance.controllers.mapping.sides import map_inputs
 from pvlvrt_compliance.simulation.door.exchange import SIGNALS
 from pvlvrt_compliance.units import Nominal
@@ -52,3 +52,24 @@ def test_any_name_is_tied_to_what_there_is_or_to_nothing(name, width):
     mapped = map_inputs([port(name, width=width)], None, NOMINAL)
     assert len(mapped.elements) + len(mapped.unmapped) == width
     assert all(0 <= element.signal < len(SIGNALS) for element in mapped.elements)
+
+
+@pytest.mark.parametrize(
+    ("name", "command", "inverted"),
+    [
+        *((name, "trip", False) for name in ("trip", "Trip_cmd", "CB_open")),
+        *((name, "block", False) for name in ("block", "gate_block", "Blocked")),
+        *((name, "block", True) for name in ("pwm_enable", "enable", "gate_enable", "deblock")),
+        ("restart", "restart", False),
+    ],
+)
+def test_switches_by_the_names_that_makers_use(name, command, inverted):
+    """A trip, a block and its opposite, a restart."""
+    found = guess_output(name, 1)
+    assert (found.names, found.inverted) == ((command,), inverted)
+
+
+def test_an_input_that_enables_stays_an_input():
+    """What a controller is told by `enabled` is no switch."""
+    assert guess_input("enable", 1).names == ("enabled",)
+    assert not guess_input("enable", 1).inverted

@@ -172,5 +172,47 @@ def test_two_complete_kinds_of_commands_ask_which():
     ports = [port(name) for name in COMMANDS]
     with pytest.raises(DoorError, match="output_kind"):
         map_outputs(ports, None, NOMINAL)
-    for kind in ("modulating", "voltage"):
-        assert map_outputs(ports, MappingFile(output_kind=kind), NOMINAL).in_volts == (kind == "voltage")
+    for kind in ("modulating", "voltage", "dq"):
+        mapped = map_outputs(ports, MappingFile(output_kind=kind), NOMINAL)
+        assert (mapped.in_volts, mapped.in_a_frame) == (kind != "modulating", kind == "dq")
+
+
+def test_voltages_in_a_frame():
+    """Direct, quadrature and angle, in units of theirs; the angle by a mapping or by its name."""
+    ports = [port("Vd_ref", "kV"), port("Vq_ref", "kV", byte=8), port("theta_ref", "deg", byte=16)]
+    mapped = map_outputs(ports, None, NOMINAL)
+    assert [COMMANDS[e.signal] for e in mapped.elements] == ["u_d_ref_v", "u_q_ref_v", "angle_rad"]
+    assert [e.gain for e in mapped.elements] == pytest.approx([1e-3, 1e-3, 180 / math.pi])
+    assert (mapped.in_a_frame, mapped.missing) == (True, ())
+    assert map_outputs([port("Vd_ref")], None, NOMINAL).missing == ("u_q_ref_v", "angle_rad")
+
+
+def test_a_switch_that_says_the_opposite():
+    """An enable of 1 is a block of 0, by its name or as a file says; the port is shown as not the command."""
+    for mapping in (None, MappingFile.model_validate({"outputs": {"ena": {"command": "block", "inverted": True}}})):
+        name = "pwm_enable" if mapping is None else "ena"
+        mapped = map_outputs([port(name)], mapping, NOMINAL)
+        (element,) = mapped.elements
+        assert (COMMANDS[element.signal], element.gain, element.offset) == ("block", -1.0, 1.0)
+        assert mapped.ports[0].mapped_to == "not block"
+
+
+@pytest.mark.parametrize("entry", [{"command": "m_a", "inverted": True}, {"record": "x", "inverted": True}])
+def test_only_switches_have_an_opposite(entry):
+    """A voltage, or a number that is recorded, cannot be inverted: the message says what can."""
+    with pytest.raises(DoorError, match=r"inverted is for switches \(trip, block, restart\)"):
+        map_outputs([port("y")], MappingFile.model_validate({"outputs": {"y": entry}}), NOMINAL)
+
+
+def test_two_outputs_of_one_switch():
+    """A block and an enable are the same command, and cannot both give it."""
+    with pytest.raises(DoorError, match="gate_block and enable both give block"):
+        map_outputs([port("gate_block"), port("enable")], None, NOMINAL)
+
+
+@pytest.mark.parametrize("index", ["9" * 9, "9" * 10, "9" * 5000])
+def test_an_element_of_any_number(index):
+    """One that the port does not have is refused, whatever its number, though Python makes none of so many digits."""
+    mapping = MappingFile.model_validate({"inputs": {f"u[{index}]": {"signal": "u_a_v"}}})
+    with pytest.raises(DoorError, match=r"u has 3 elements, counted from 0|the controller has no such input"):
+        map_inputs([port("u", width=3)], mapping, NOMINAL)

@@ -46,6 +46,32 @@ def test_folder_is_gone_after_its_job(temporary):
     assert list(temporary.iterdir()) == []
 
 
+def locked(folder):
+    """Nobody may look into it, nor into what is in it."""
+    (folder / "in" / "it").mkdir(parents=True)
+    (folder / "in" / "it" / "file").touch()
+    (folder / "in").chmod(0)
+    folder.chmod(0)
+
+
+def elsewhere(folder):
+    """A link stands in its place."""
+    folder.rmdir()
+    (folder.parent / "mine").mkdir()
+    (folder.parent / "mine" / "file").touch()
+    folder.symlink_to(folder.parent / "mine")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="rights and links are those of POSIX")
+@pytest.mark.parametrize(("deed", "stays"), [(locked, []), (elsewhere, ["mine"]), (os.rmdir, [])])
+def test_folder_that_a_controller_has_spoiled(temporary, deed, stays):
+    """It is gone after its job all the same, and what a link leads to is left alone."""
+    with job_folder() as folder:
+        deed(folder)
+    assert [path.name for path in temporary.iterdir()] == stays
+    assert all((temporary / name / "file").is_file() for name in stays)
+
+
 @pytest.mark.usefixtures("other")
 def test_living_process_keeps_its_folder(temporary):
     """As long as it lives; and so does this one."""

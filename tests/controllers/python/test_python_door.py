@@ -1,5 +1,6 @@
 """A class in Python as a controller: what it must have, what it can be given, what is said of its mistakes."""
 
+import hashlib
 import shutil
 from pathlib import Path
 
@@ -121,3 +122,53 @@ def test_a_mapping_can_only_list_files(tmp_path):
     mapping.write_text("files = ['mine.py']\n")
     assert PythonDoor(f"{tmp_path / 'mine.py'}:Small", {}).describe().mapping == str(mapping)
     assert PythonDoor(f"{tmp_path / 'mine.py'}:Small", {}, str(mapping)).describe().mapping == str(mapping)
+
+
+@pytest.fixture
+def package(tmp_path, monkeypatch):
+    """A package in the working folder, of a class that takes its gain by a relative import."""
+    folder = tmp_path / "a_vendors_package" / "control"
+    folder.mkdir(parents=True)
+    for place in (folder.parent, folder):
+        (place / "__init__.py").write_text("")
+    (folder.parent / "gains.py").write_text("GAIN = 1.0\n")
+    text = SMALL.read_text().replace("gain=1.0", "gain=GAIN")
+    (folder / "holding.py").write_text(f"from ..gains import GAIN\n\n{text}")
+    monkeypatch.chdir(tmp_path)
+    return folder
+
+
+@pytest.mark.parametrize(
+    "spec", ["a_vendors_package.control.holding:Small", "a_vendors_package/control/holding.py:Small"]
+)
+def test_a_module_and_a_file_of_a_package_with_relative_imports(package, spec):
+    """Either is imported as part of its package, and runs; digest and name are those of the file that it lies in."""
+    controller = ForeignSimulator(spec)
+    assert controller.description.name == "Small"
+    by_file = hashlib.sha256((package / "holding.py").read_bytes()).hexdigest()
+    assert controller.description.digest == by_file
+    assert controller(SCENARIO, QUICK).end_s == pytest.approx(SCENARIO.end_s, abs=1e-3)
+
+
+def test_an_installed_module():
+    """What Python finds by its name is taken as it is; a class that is no controller is told what it lacks."""
+    with pytest.raises(UsageError, match=r"wave:Error: Error has no attribute sample_time_s"):
+        ForeignSimulator("wave:Error")
+
+
+@pytest.mark.parametrize(
+    ("spec", "words"),
+    [
+        ("a_vendors_package.controls.holding:Small", "there is no module a_vendors_package.controls, installed or in"),
+        ("no_such_module_at_all:Small", "there is no module no_such_module_at_all, installed or in "),
+        ("a_vendors_package.control.holding:Smal", "has no class 'Smal'; did you mean \"Small\"?"),
+        ("math:Small", "math is no module that is written in Python"),
+        ("a_vendors_package.broken:Small", "a_vendors_package.broken cannot be imported: RuntimeError: not today"),
+    ],
+)
+def test_modules_that_cannot_be_used(package, spec, words):
+    """Each mistake is told with what was looked for."""
+    (package.parent / "broken.py").write_text("raise RuntimeError('not today')\n")
+    with pytest.raises(UsageError) as error:
+        ForeignSimulator(spec)
+    assert words in str(error.value)

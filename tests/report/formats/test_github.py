@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from pvlvrt_compliance.report import workflow_commands
 from pvlvrt_compliance.report.formats import github
+from pvlvrt_compliance.texts import harmless
 from runner import commands
 from told import FAILED, KNOWN, PASSED, UNJUDGED, WORSE, run_of, test_of
 
@@ -68,14 +69,14 @@ def test_any_text_comes_out_as_it_went_in(text):
 @given(text=anything)
 def test_a_harmless_text_has_no_command(text):
     """Whatever lines and white space come before them, of any kind that ends a line or begins one."""
-    assert commands(workflow_commands.harmless(text)) == []
+    assert commands(harmless(text)) == []
 
 
 def test_what_is_no_command_stays_as_it_is():
     """Only what the runner would obey is changed, and can still be read."""
     text = "a::b\n: :c\nat 12::30, # [x]\n"
-    assert workflow_commands.harmless(text) == text
-    assert workflow_commands.harmless("x\n  ::error::y ##[group]z") == "x\n  : :error::y ## [group]z"
+    assert harmless(text) == text
+    assert harmless("x\n  ::error::y ##[group]z") == "x\n  : :error::y ## [group]z"
 
 
 def test_texts_of_others_command_nothing():
@@ -84,7 +85,7 @@ def test_texts_of_others_command_nothing():
     known = KNOWN.model_copy(update={"check": ATTACK, "known_reason": ATTACK})
     found = annotations(run_of(test_of(ATTACK, bad, known, title=ATTACK), files={"controller": ATTACK}))
     assert [each.name for each in found] == ["error", "notice", "error"]
-    assert found[0].message.startswith("at 90 %25, a:b\r\n::set-output name=x::y\n")
+    assert found[0].message.startswith("at 90 %25, a:b\r\n: :set-output name=x::y\n")
 
 
 @pytest.mark.parametrize(("value", "read"), [("true", True), ("false", False), ("", False), (None, False)])

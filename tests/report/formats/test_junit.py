@@ -61,9 +61,9 @@ def test_names_and_outcomes(make_test, make_results):
 
 
 @pytest.mark.parametrize(
-    ("given_text", "read"), [("a\x00b\x1bc", "a\ufffdb\ufffdc"), ("\ud800", "\ufffd"), ("1 < 2 & ü", "1 < 2 & ü")]
+    ("given_text", "read"), [("a\x00b\x1bc", r"a\x00b\x1bc"), ("\ud800", r"\ud800"), ("1 < 2 & ü", "1 < 2 & ü")]
 )
-def test_characters_that_xml_cannot_hold_are_replaced(given_text, read):
+def test_characters_that_xml_cannot_hold_are_spelled(given_text, read):
     """A message with control characters still is a readable file."""
     check = Verdict.model_construct(
         check="x",

@@ -6,6 +6,7 @@ import pytest
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.simulation.door import ports
 from pvlvrt_compliance.simulation.door.blocks import (
+    IN_A_FRAME,
     ITEM_SIZES,
     MODULATING,
     NUMBER_TYPES,
@@ -16,7 +17,7 @@ from pvlvrt_compliance.simulation.door.blocks import (
     port_table,
     real_block,
 )
-from pvlvrt_compliance.simulation.door.exchange import COMMANDS
+from pvlvrt_compliance.simulation.door.exchange import COMMANDS, SWITCHES
 
 
 def test_numbers_of_every_type_are_found(in_python):
@@ -55,7 +56,7 @@ def test_reals_one_after_another():
     assert block_memory(0).nbytes == 8
 
 
-def test_commands_are_of_two_kinds():
-    """Three modulating signals, three voltages, and no other."""
+def test_commands_are_of_two_kinds_and_switches():
+    """Three modulating signals, three voltages, the switches, voltages in a frame, and no other."""
     assert (len(MODULATING), len(VOLTAGES)) == (3, 3)
-    assert {*MODULATING, *VOLTAGES} == set(COMMANDS)
+    assert (*MODULATING, *VOLTAGES, *SWITCHES, *IN_A_FRAME) == COMMANDS

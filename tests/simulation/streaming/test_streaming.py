@@ -9,16 +9,18 @@ from draws import draws
 from pvlvrt_compliance.disturbance.asked import disturbance_asked
 from pvlvrt_compliance.disturbance.model import NormalVoltage
 from pvlvrt_compliance.errors import MeasurementError
-from pvlvrt_compliance.evidence.instruments import BY_DEFINITION, Instruments
+from pvlvrt_compliance.evidence.instruments import BY_DEFINITION
 from pvlvrt_compliance.evidence.series import Series
+from pvlvrt_compliance.measure.power import sequence_current
+from pvlvrt_compliance.measure.sequences import phase_amplitudes
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.simulate import simulate
-from pvlvrt_compliance.simulation.streaming import averages, frequency
 from pvlvrt_compliance.simulation.translate import nominal_of
+from pvlvrt_compliance.study.instruments import compiled_instruments
 from pvlvrt_compliance.waveforms import Segment
 
-COMPILED = Instruments(averages.sequence_phasors, averages.mean_powers, frequency.tracked_frequency)
+COMPILED = compiled_instruments()
 NORMAL = NormalVoltage(low_pu=0.9, high_pu=1.1, negative_pu=0.1)
 STEPS_S = (40.9568e-6, 163.8272e-6, 327.6544e-6, 1.9e-3)
 CHANNELS = ("u_a_v", "u_b_v", "u_c_v", "i_a_a", "i_b_a", "i_c_a")
@@ -77,6 +79,25 @@ def test_series_are_those_of_the_definition(segment, data):
         with np.errstate(invalid="ignore"):  # of what is infinite
             expected = measured(BY_DEFINITION)
         same(measured(COMPILED), expected, scale)
+
+
+@given(segments(), st.data())
+@draws(80)
+def test_amplitudes_and_currents_are_those_of_the_definition(segment, data):
+    """Of sequences and phases by any base, and a current along its voltage: none where that is below the floor."""
+    window_hz = data.draw(st.one_of(st.floats(47, 63), moving(len(segment))))
+    base, floor = data.draw(st.sampled_from([1.0, 326.6, 1e-3])), data.draw(st.sampled_from([1.0, 30.0, 290.0]))
+    with np.errstate(invalid="ignore"):
+        u, i = (BY_DEFINITION.sequence_phasors(segment, kind, window_hz) for kind in "ui")
+        same(COMPILED.sequence_amplitudes(segment, "u", window_hz, base), np.abs(u[:2]) / base, 300 / base)
+        expected = phase_amplitudes(segment, "i", window_hz) / base
+        same(COMPILED.phase_amplitudes(segment, "i", window_hz, base), expected, 300 / base)
+        for index in (0, 1):
+            if np.abs(np.abs(u[index]) - floor).min() > 1e-6 * floor:  # which side of it is nothing but rounding
+                expected = np.stack(sequence_current(u[index], i[index], floor)) / base
+                # The angle of a faint voltage has the rounding of the strong one that it is found beside.
+                scale = 300 * max(1.0, 300 / floor) / base
+                same(COMPILED.sequence_current(segment, index, window_hz, floor, base), expected, scale)
 
 
 @pytest.mark.parametrize("by", [BY_DEFINITION, COMPILED], ids=["numpy", "compiled"])
@@ -155,5 +176,9 @@ def test_evidence_is_the_same(scenario, trips):
         same(getattr(found, name), getattr(expected, name), 50 if name.endswith("hz") else 1)
     for name in ("current_positive_pu", "current_negative_pu"):
         same(getattr(found, name), getattr(expected, name), 1)
+    for kind in ("u", "u0"):
+        same(found.phase_amplitudes_pu(kind), expected.phase_amplitudes_pu(kind), 1)
+        for index in (0, 1, 2):
+            same(found.sequence_pu(kind, index), expected.sequence_pu(kind, index), 1)
     for name in ("active_power_kw", "reactive_power_kvar", "half_cycle_kva"):
         same(getattr(found, name), getattr(expected, name), 500)

@@ -9,10 +9,13 @@ import pytest
 from clusters import ROOT, cluster
 
 import pvlvrt_compliance
+from evil import EVIL
+from pvlvrt_compliance.controllers.process.family import FORKS
 from pvlvrt_compliance.errors import LostError, UsageError
 from pvlvrt_compliance.study.executors.cluster.executor import Cluster
 from pvlvrt_compliance.study.job import Asked, make_job
 from pvlvrt_compliance.study.named import Named
+from pvlvrt_compliance.study.opening import open_controller
 from pvlvrt_compliance.study.session import session
 from pvlvrt_compliance.study.work import Work
 
@@ -85,6 +88,21 @@ def test_a_test_that_kills_its_workers_is_an_error(running, job, expected, marks
     assert results[KILLED].status == "error"
     assert re.fullmatch(r"given up after two tries: (worker tcp://[\d.:]+ was lost while it was run(; |$)){2}", message)
     assert len(list(marks.iterdir())) == 2
+
+
+@pytest.mark.skipif(not FORKS, reason="only Linux holds a controller to all of its limits")
+@pytest.mark.parametrize("name", ["forges an answer, python", "stops its parent, python", "eats memory, python"])
+def test_a_controller_that_does_harm_costs_its_own_test(running, name, tmp_path):
+    """On the worker, too, within the limits of the job; nothing of its process comes here as an object."""
+    running.have(1)
+    evil, tests = EVIL[name], ("VD1-full-1", "VD3-full-1")
+    asked = Asked(profiles=[PROFILE], tests=tests, controller=evil.build(tmp_path), settings=evil.settings)
+    job = make_job(asked)
+    controller = open_controller(job)
+    there = Cluster(running.address, controller=controller)
+    found = {t.result.id: t.result for t in session(Work(job=job), controller=controller, executor=there)}
+    assert {name for name in tests if found[name].status == "error"} == {"VD3-full-1"}
+    assert evil.expected in found["VD3-full-1"].checks[0].message
 
 
 def test_a_worker_of_another_version_is_refused(job, tmp_path):

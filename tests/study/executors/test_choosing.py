@@ -79,7 +79,7 @@ def test_a_controller_of_this_process_stays_here():
 @pytest.mark.parametrize("given", ["0", "-1", "many", "1.5", 0])
 def test_what_is_no_number_of_jobs(given):
     """It is refused before anything is run."""
-    with pytest.raises(UsageError, match=rf"jobs {given}: give how many tests are run at once, 1 or more, or auto"):
+    with pytest.raises(UsageError, match=rf"jobs {given}: give how many tests are run at once, 1 to 1024, or auto"):
         make_job(Asked(profiles=("iec61400-21",), jobs=given))
 
 

@@ -93,6 +93,22 @@ def test_workers_that_are_killed(tmp_path, capfd, none_are_left):
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(not FORKS, reason="only Linux shows that a process is stopped")
+@pytest.mark.parametrize(
+    ("deed", "reason"), [("stopped", "was stopped (SIGSTOP)"), ("babbling", "said what it never says")]
+)
+def test_workers_that_are_stopped_or_not_understood(deed, reason, none_are_left):
+    """They are ended; their unit is run again, is then an error, and the other test is in the results."""
+    well, bad = TWO
+    asked = work(*TWO, each=Named(f"makings:{deed}", {"tests": [bad]}))
+    found = {test.result.id: test.result for test in session(asked, executor=Processes(1))}
+    assert {test: found[test].status for test in TWO} == {well: Status.PASS, bad: Status.ERROR}
+    said = {check.message.splitlines()[0] for check in found[bad].checks}
+    assert said == {f"the process that ran it {reason}"}
+    none_are_left()
+
+
+@pytest.mark.slow
 def test_an_error_of_the_program_ends_the_run(none_are_left):
     """It is raised as it was, and says where it was in the other process."""
     with pytest.raises(ZeroDivisionError, match=r"VD6-full-1 of \d") as raised:
@@ -113,11 +129,12 @@ def test_processes_that_do_not_start(monkeypatch, none_are_left):
 @pytest.mark.slow
 def test_who_stops_listening_ends_the_processes():
     """Whatever they are at, and what controllers run in, they are gone then."""
+    before = set(descendants(os.getpid()))  # of tests before, in the same process
     asked = work(*TWO, controller=f"{CONTROLLERS / 'small.py'}:Small")
     stream = session(asked, controller=open_controller(asked.job), executor=Processes(2))
     next(stream)
     stream.close()
-    left = descendants(os.getpid())
+    left = set(descendants(os.getpid())) - before
     assert len(left) <= 1  # that in which this process has opened the controller
     open_controller(asked.job).stop()
 

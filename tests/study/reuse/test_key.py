@@ -19,8 +19,9 @@ from pvlvrt_compliance.scenario.events import PhaseJump, Recording
 from pvlvrt_compliance.scenario.sag import Sag
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.parameters import Parameters, parameter_names, parameters_from
-from pvlvrt_compliance.study.reuse.key import ROOMS, key_of, sources_parts, surroundings_digest
+from pvlvrt_compliance.study.reuse.key import key_of, surroundings_digest
 from pvlvrt_compliance.study.reuse.simulator import ReusingSimulator
+from pvlvrt_compliance.study.sources import ROOMS, of_records
 from pvlvrt_compliance.waveforms import Segment, Waveforms
 from pvlvrt_compliance.waveforms.comtrade import write_comtrade
 
@@ -132,7 +133,7 @@ def others_of(name, value):
     numbers = (
         [] if isinstance(value, bool) or not isinstance(value, int | float) else [value + 1, 1.01 * value, value / 2]
     )
-    flags = [not value] if isinstance(value, bool) else []
+    flags = [not value] if isinstance(value, bool) or "bool" in annotation else []
     return [*flags, *numbers, *filter(None, words), OTHER_WORDS.get(name), [1.0, 1.1, 1.0], 0.5, 5.0]
 
 
@@ -316,7 +317,7 @@ def test_all_that_a_simulation_imports_is_among_the_sources():
         if end not in met:
             met.add(end)
             ends += imports_of(end)
-    counted = {file.removesuffix(".py").removesuffix("/__init__").replace("/", ".") for file in sources_parts(PACKAGE)}
+    counted = {file.removesuffix(".py").removesuffix("/__init__").replace("/", ".") for file in of_records()}
     assert len(doors) >= 4
     assert {name.removeprefix(f"{NAME}.") for name in met} <= counted
     assert {name.partition(".")[0] for name in counted if "." in name} == set(ROOMS) - {""}

@@ -147,7 +147,7 @@ def test_what_is_no_folder_and_no_size_is_refused(tmp_path):
     assert refused(reuse="") == "--reuse : a folder is needed"
     assert refused(reuse_size="2GB") == "--reuse-size needs --reuse"
     assert refused(reuse="r", reuse_size="2 apples").startswith("--reuse-size: '2 apples' is not a size")
-    assert refused(reuse="r", reuse_size="0GB") == "--reuse-size: 0GB must be above zero"
+    assert refused(reuse="r", reuse_size="0GB") == "--reuse-size: 0GB must be above zero and at most 1e+06 GB"
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,12 @@
 """The way to a scheduler: one that runs somewhere, or one that is started here with its workers."""
 
+import asyncio
 import logging
+import threading
 import traceback
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from concurrent import futures
 from contextlib import ExitStack, contextmanager, suppress
 from typing import Any, NamedTuple
 
@@ -21,6 +24,8 @@ EXTRA = "pip install 'pvlvrt-compliance[cluster]'"
 _LOGGERS = ("distributed", "distributed.client", "distributed.gc", "bokeh", "tornado", "tornado.application")
 _CLOSING_S = 5.0
 _FETCH_S = 120.0  # for the result of a task to come
+_GREETING_S = 10.0  # for an address to answer as a scheduler, unless dask's own settings say how long
+_OF_DASK_S = 30.0  # what they say where nobody has said anything
 
 
 def check_installed() -> None:
@@ -78,9 +83,64 @@ def _client(target: Any, named: str) -> Client:
         if isinstance(target, str):  # what can be seen before: a client that is half made is slow to go
             get_address_host_port(target)
             _refuse_without_keys(target)
+            _greet(target)
         return Client(target, name="pvlvrt-check", set_as_default=False)
     except Exception as error:  # of address, TLS, network, or of the answer of what is no scheduler
         raise UsageError(f"{named}: no scheduler can be reached there: {_first_line(error)}") from None
+
+
+def _greet(address: str) -> None:
+    """See that a scheduler answers: of what takes a connection and says nothing dask waits for ever.
+
+    Raises
+    ------
+    OSError
+        When nothing answers there, or not in time.
+    ValueError
+        When something else does.
+    """
+    import dask.config
+    from dask.utils import parse_timedelta
+
+    asked_s: float = parse_timedelta(dask.config.get("distributed.comm.timeouts.connect"))
+    patience_s = _GREETING_S if asked_s == _OF_DASK_S else asked_s
+    asked: futures.Future[Mapping[str, Any]] = futures.Future()
+
+    def ask() -> None:
+        try:
+            asked.set_result(asyncio.run(_answer(address, patience_s)))
+        except Exception as error:
+            asked.set_exception(error)
+
+    # A notebook has a loop of its own in this thread, and nobody waits for an answer whom Ctrl-C has ended.
+    threading.Thread(target=ask, daemon=True).start()
+    answer = asked.result()
+    if answer.get("type") != "Scheduler":
+        raise ValueError(f"what answers there is no scheduler but {answer.get('type', 'something else')}")
+
+
+async def _answer(address: str, patience_s: float) -> Mapping[str, Any]:
+    from distributed.comm import connect
+    from distributed.core import send_recv
+    from distributed.security import Security
+
+    async def asked() -> Mapping[str, Any]:
+        # Of two bounds on the same time either might be told.
+        comm = await connect(address, timeout=2 * patience_s, **Security().get_connection_args("client"))
+        try:
+            said = await send_recv(comm, op="identity", reply=True)
+            return said if isinstance(said, Mapping) else {}
+        finally:
+            comm.abort()
+
+    try:
+        return await asyncio.wait_for(asked(), patience_s)
+    except OSError as error:  # an answer that does not come in time among them
+        if error.args:
+            raise
+        raise OSError(f"nothing answers within {patience_s:g} s") from None
+    except Exception:  # of words that are not dask's
+        return {}
 
 
 def _refuse_without_keys(address: str) -> None:

@@ -1,15 +1,15 @@
 """What a worker must have in common with the process that asks: versions, and the text of what decides a verdict."""
 
-import hashlib
 import inspect
+import json
 from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
 from pvlvrt_compliance.checks.registry import find_check
 from pvlvrt_compliance.profile.profile import Profile
-from pvlvrt_compliance.resources import resource_folder
 from pvlvrt_compliance.study.provenance import versions
+from pvlvrt_compliance.study.sources import digest_of_content, digest_of_file, of_results
 
 _SOURCES = "digest of pvlvrt-compliance's files"
 
@@ -22,7 +22,7 @@ def identity(kinds: Iterable[str] = ()) -> dict[str, str]:
     kinds : iterable of str
         Kinds of checks that the job judges: those of other packages go by the text of their module.
     """
-    return {**versions(), _SOURCES: sources_digest(), **_of_others(kinds)}
+    return {**versions(), _SOURCES: _sources(), **_of_others(kinds)}
 
 
 def kinds_of(profiles: Iterable[Profile]) -> tuple[str, ...]:
@@ -37,16 +37,8 @@ def differences(needed: Mapping[str, str], found: Mapping[str, str]) -> str:
 
 
 @cache
-def sources_digest() -> str:
-    """SHA-256 of the files that the package consists of, and of the texts that figures carry (hexadecimal)."""
-    package = Path(inspect.getfile(resource_folder)).parent
-    texts = resource_folder("reports") / "texts"
-    files = {f"package/{file.relative_to(package).as_posix()}": file for file in package.rglob("*.py")}
-    files |= {f"texts/{file.relative_to(texts).as_posix()}": file for file in texts.rglob("*") if file.is_file()}
-    digest = hashlib.sha256()
-    for name in sorted(files):
-        digest.update(f"{name} {_digest_of(files[name])}\n".encode())
-    return digest.hexdigest()
+def _sources() -> str:
+    return digest_of_content(json.dumps(of_results()).encode())
 
 
 def _of_others(kinds: Iterable[str]) -> dict[str, str]:
@@ -55,14 +47,10 @@ def _of_others(kinds: Iterable[str]) -> dict[str, str]:
     checks = {kind: find_check(kind) for kind in kinds}
     modules = {kind: inspect.getmodule(type(check)) for kind, check in checks.items() if check is not None}
     return {
-        f"check {kind}": _digest_of(Path(module.__file__))
+        f"check {kind}": digest_of_file(Path(module.__file__))
         for kind, module in modules.items()
         if module is not None and module.__file__ and module.__name__.partition(".")[0] != own
     }
-
-
-def _digest_of(file: Path) -> str:
-    return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
 def _short(value: str | None) -> str:

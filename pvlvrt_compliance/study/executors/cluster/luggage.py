@@ -8,17 +8,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.ordinary_file import NotOrdinaryError, TooLargeError, content_of
 from pvlvrt_compliance.scenario.events import Event, Recording
+from pvlvrt_compliance.scenario.recordings import Named
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.study.executors.cluster.identity import identity, kinds_of
 from pvlvrt_compliance.study.executors.cluster.travelling import Travelling, travelling
+from pvlvrt_compliance.study.played import recordings_of
 from pvlvrt_compliance.study.work import Work
+from pvlvrt_compliance.waveforms.playback import LARGEST_PLAYED_BYTES
+from pvlvrt_compliance.waveforms.recording import LARGEST_RECORD_BYTES, files_of
 
 if TYPE_CHECKING:
     from pvlvrt_compliance.controllers.simulator import ForeignSimulator
 
 _MAIN_MODULE = b"__main__"
-_OF_COMTRADE = (".cfg", ".dat", ".hdr", ".inf")
 
 
 class Packed(NamedTuple):
@@ -42,13 +46,17 @@ class Luggage:
     controller : Travelling, optional
         The user's own.
     recordings : mapping
-        Place of a recording by the name that scenarios have for it.
+        Place of a recording by what scenarios call it, and by which file.
     """
 
     work: bytes
     files: tuple[Packed, ...]
     controller: Travelling | None
-    recordings: Mapping[str, str]
+    recordings: "Mapping[Called, str]"
+
+
+Called = tuple[str, Named | None]
+"""What a scenario calls a recording, and the file that it is named by: others may have that name for another."""
 
 
 class Parcel(NamedTuple):
@@ -69,11 +77,19 @@ def packed(work: Work, controller: "ForeignSimulator | None") -> Parcel:
         When something of it is of this process only, or a file cannot be read.
     """
     own = travelling(controller, work.job) if controller is not None else None
-    recordings = {name: f"recordings/{k}/{Path(name).name}" for k, name in enumerate(_recordings(work))}
-    files = [item for name, place in recordings.items() for item in _of_recording(Path(name), Path(place))]
+    found = _recordings(work)
+    recordings = {called: f"recordings/{k}/{file.name}" for k, (called, (file, _)) in enumerate(found.items())}
+    files = [
+        (other, place, LARGEST_PLAYED_BYTES, within)
+        for called, (file, within) in found.items()
+        for other, place in _of_recording(file, Path(recordings[called]))
+    ]
     luggage = Luggage(
         work=_pickled(replace(work, job=replace(work.job, controller=own and own.spec))),
-        files=tuple(_read(file, place) for place, file in (*files, *(own.files.items() if own else ()))),
+        files=(
+            *(_read(*each) for each in files),
+            *(_read(file, place) for place, file in (own.files.items() if own else ())),
+        ),
         controller=own and own._replace(files={}),
         recordings=recordings,
     )
@@ -87,7 +103,7 @@ def digest_of(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def with_recordings(scenario: Scenario, places: Mapping[str, Path]) -> Scenario:
+def with_recordings(scenario: Scenario, places: Mapping[Called, Path]) -> Scenario:
     """A scenario whose recordings are played back from where they are here."""
     events = tuple(_with_recording(event, places) for event in scenario.events)
     return scenario.model_copy(update={"events": events})
@@ -103,33 +119,35 @@ def _pickled(work: Work) -> bytes:
     return content
 
 
-def _with_recording(event: Event, places: Mapping[str, Path]) -> Event:
-    if not isinstance(event, Recording) or event.file not in places:
+def _with_recording(event: Event, places: Mapping[Called, Path]) -> Event:
+    if not isinstance(event, Recording) or _called(event) not in places:
         return event
-    return event.model_copy(update={"file": str(places[event.file])})
+    return event.moved_to(places[_called(event)])
 
 
-def _recordings(work: Work) -> list[str]:
-    """Recordings of a job that can be read; of any other each test says what is wrong with it."""
-    events = (event for item in work.job.tests for event in item.test.scenario.events)
-    names = dict.fromkeys(event.file for event in events if isinstance(event, Recording))
-    return [name for name in names if Path(name).is_file()]
+def _called(event: Recording) -> Called:
+    return event.file, event.named
 
 
-def _of_recording(file: Path, place: Path) -> Iterator[tuple[str, Path]]:
-    """A recording, and the other files of a COMTRADE file, by their places."""
-    yield place.as_posix(), file
-    if file.suffix.lower() in _OF_COMTRADE:
-        for other in file.parent.iterdir():
-            if other.stem == file.stem and other.suffix.lower() in _OF_COMTRADE and other.name != file.name:
-                yield place.with_name(other.name).as_posix(), other
+def _recordings(work: Work) -> dict[Called, tuple[Path, Path | None]]:
+    """Recordings of a job and the folders that they must lie in; each has been read when the job was made."""
+    found = (event for item in work.job.tests for event in recordings_of(item.test.scenario))
+    return {_called(event): event.located() for event in found}
 
 
-def _read(file: Path, place: str) -> Packed:
+def _of_recording(file: Path, place: Path) -> Iterator[tuple[Path, str]]:
+    """The files of a recording by their places."""
+    for each in files_of(file):
+        yield each, place.with_name(each.name).as_posix()
+
+
+def _read(file: Path, place: str, most_bytes: int = LARGEST_RECORD_BYTES, within: Path | None = None) -> Packed:
     try:
-        content = file.read_bytes()
-    except OSError as error:
-        raise UsageError(f"{file} cannot be read: {error.strerror or error}") from None
+        content = content_of(file, most_bytes, within)
+    except TooLargeError:
+        raise UsageError(f"{file} is larger than {most_bytes >> 20} MiB") from None
+    except NotOrdinaryError as error:
+        raise UsageError(f"{file} {error}") from None
     return Packed(place, content, digest_of(content))
 
 

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pvlvrt_compliance.errors import PvlvrtError, UsageError
-from pvlvrt_compliance.study.executors.cluster.luggage import Luggage, unpack, with_recordings
+from pvlvrt_compliance.simulation.parameters import Parameters
+from pvlvrt_compliance.study.executors.cluster.luggage import Called, Luggage, unpack, with_recordings
 from pvlvrt_compliance.study.executors.cluster.travelling import Travelling
 from pvlvrt_compliance.study.executors.units import Unit, units_of
 from pvlvrt_compliance.study.work import Work
@@ -52,7 +53,7 @@ class Unpacked:
             self.units: Sequence[Unit] = units_of(self.work.job.tests, self.work.job.first)
             own = luggage.controller
             places = {name: self.folder / place for name, place in luggage.recordings.items()}
-            self.controller = _opened(own, self.folder) if own is not None else None
+            self.controller = _opened(own, self.folder, self.work.job.parameters) if own is not None else None
             self.simulator = _played_back(simulator_for(self.work.job, self.controller), places)
             self._stack = stack.pop_all()
 
@@ -72,14 +73,14 @@ class Unpacked:
         return replace(work, keeping=replace(work.keeping, staging=self.staging, folder=self.staging))
 
 
-def _played_back(simulator: "Simulator", places: Mapping[str, Path]) -> "Simulator":
+def _played_back(simulator: "Simulator", places: Mapping[Called, Path]) -> "Simulator":
     """A simulator that reads recordings where they are here."""
     if not places:
         return simulator
     return lambda scenario, parameters: simulator(with_recordings(scenario, places), parameters)
 
 
-def _opened(own: Travelling, folder: Path) -> "ForeignSimulator":
+def _opened(own: Travelling, folder: Path, parameters: Parameters) -> "ForeignSimulator":
     """The controller as it was sent, else as it is at the same place on this machine, if that is the same.
 
     Raises
@@ -92,19 +93,21 @@ def _opened(own: Travelling, folder: Path) -> "ForeignSimulator":
         tries.append((own.spec, own.mapping, own.beside))
     reasons = [f"it cannot be sent ({own.why_not})"] if own.why_not else []
     for spec, mapping, beside in tries:
-        found = _tried(own, spec, mapping, beside)
+        found = _tried(own, spec, mapping, beside, parameters)
         if not isinstance(found, str):
             return found
         reasons.append(f"{'as it was sent' if spec != own.spec else f'in {beside}'}: {found}")
     raise RefusedError(f"controller {own.spec}: {'; '.join(reasons) or f'there is no folder {own.beside}'}")
 
 
-def _tried(own: Travelling, spec: str, mapping: str | None, beside: str) -> "ForeignSimulator | str":
+def _tried(
+    own: Travelling, spec: str, mapping: str | None, beside: str, parameters: Parameters
+) -> "ForeignSimulator | str":
     """The controller at a place, or why it is not usable."""
     from pvlvrt_compliance.controllers.simulator import ForeignSimulator
 
     try:
-        controller = ForeignSimulator(spec, own.given, mapping, beside=beside)
+        controller = ForeignSimulator(spec, own.given, mapping, beside=beside, parameters=parameters)
     except UsageError as error:
         return str(error).removeprefix(f"--controller {spec}: ")
     except PvlvrtError as error:

@@ -1,0 +1,219 @@
+"""What the process of a controller answers, and how it is read: data of somebody else, to be checked, never objects.
+
+A head in JSON (`ANSWER`) says which job it answers, and what; the record of a run lies beside it (`RECORD`), nothing
+but its numbers, row by row, as little-endian float64. Both are ordinary files of a size that is known or bounded;
+whatever else is found there is no answer.
+"""
+
+import json
+import math
+import os
+import stat
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, TypeAdapter, ValidationError
+
+from pvlvrt_compliance.controllers.channels import check_channel
+from pvlvrt_compliance.controllers.description import Description
+from pvlvrt_compliance.controllers.door import DoorError
+from pvlvrt_compliance.errors import SimulationError
+from pvlvrt_compliance.simulation.columns import RECORDED
+from pvlvrt_compliance.texts import all_printable
+
+ANSWER, RECORD = "answer.json", "record.f64"
+"""Files in the folder of a job."""
+
+_NUMBER = np.dtype("<f8")
+_LONGEST_HEAD = 16 << 20
+"""Bytes: a controller of 10 000 ports, each described in a line, has a fifth of it."""
+
+_LONGEST_TEXT = 4000  # characters of an error or a note
+_MOST_NOTES = 100
+_MOST_CHANNELS = 10_000
+_ROWS_AT_ONCE = 4096
+
+Text = Annotated[str, Field(max_length=_LONGEST_TEXT)]
+
+
+class BadAnswerError(SimulationError):
+    """What a process has left is no answer to its job."""
+
+    def __init__(self, why: str) -> None:
+        super().__init__(f"its answer cannot be used: {why}")
+
+
+class Head(BaseModel):
+    """Head of an answer: one of an error, of a description, or of a record with what goes with it."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+    job: str
+    error: Text | None = None
+    description: dict[str, Any] | None = None
+    channels: Annotated[tuple[str, ...], Field(max_length=_MOST_CHANNELS)] | None = None
+    notes: Annotated[tuple[Text, ...], Field(max_length=_MOST_NOTES)] = ()
+    tripped_at_s: FiniteFloat | None = None
+
+
+class Answer(NamedTuple):
+    """An answer that has been checked."""
+
+    head: Head
+    description: Description | None = None
+    samples: NDArray[np.float64] | None = None
+
+
+def write_answer(folder: Path, job: str, answer: Mapping[str, Any], samples: NDArray[np.float64] | None = None) -> None:
+    """Leave an answer: its record first, the head last and at once.
+
+    Raises
+    ------
+    OSError
+        When the head cannot be written.
+    """
+    if samples is not None:
+        try:
+            with (folder / RECORD).open("xb") as file:
+                file.write(np.ascontiguousarray(samples, _NUMBER).data)
+        except OSError as error:
+            (folder / RECORD).unlink(missing_ok=True)  # room for the answer
+            answer = {"error": f"{folder / RECORD} cannot be written: {error.strerror or error}"}
+    bounded = dict(answer)
+    if "error" in bounded:
+        bounded["error"] = _bounded(bounded["error"])
+    if "notes" in bounded:
+        bounded["notes"] = [_bounded(note) for note in bounded["notes"][:_MOST_NOTES]]
+    unfinished = folder / f"{ANSWER}.part"
+    unfinished.write_text(json.dumps({"job": job, **all_printable(bounded)}), "utf-8")
+    unfinished.replace(folder / ANSWER)
+
+
+def read_answer(folder: Path, job: str, rows: int | None) -> Answer | None:
+    """Read the answer to a job; None where there is none.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the job.
+    job : str
+        What was told to the process, and to no other.
+    rows : int or None
+        Samples that the record of a run must have; None where the controller was to be described.
+
+    Raises
+    ------
+    BadAnswerError
+        When what is there is anything else, with the reason.
+    """
+    data = _bytes_of(folder / ANSWER, None)
+    if data is None:
+        return None
+    try:
+        head = Head.model_validate_json(data)
+    except ValidationError as error:
+        raise BadAnswerError(_first_of(error)) from None
+    if head.job != job:
+        raise BadAnswerError("it is to another question")
+    if head.error is not None:
+        return Answer(head)
+    if rows is None:
+        return Answer(head, description=_description(head.description))
+    return Answer(head, samples=_samples(folder / RECORD, _channels(head.channels), rows))
+
+
+def _bounded(text: str) -> str:
+    return text if len(text) <= _LONGEST_TEXT else f"{text[: _LONGEST_TEXT - 4]} ..."
+
+
+def _first_of(error: ValidationError) -> str:
+    first = error.errors(include_url=False, include_input=False, include_context=False)[0]
+    place = ".".join(map(str, first["loc"]))[:80]
+    return f"{place}: {first['msg'][:200]}" if place else str(first["msg"])[:200]
+
+
+_DESCRIPTION = TypeAdapter(Description)
+
+
+def _description(data: dict[str, Any] | None) -> Description:
+    try:
+        found = _DESCRIPTION.validate_json(json.dumps(data), strict=True)
+    except ValidationError as error:
+        raise BadAnswerError(f"description.{_first_of(error)}") from None
+    widths = [port.width for port in (*found.inputs, *found.outputs)]
+    if not all(0 <= width <= _LONGEST_HEAD for width in widths) or not math.isfinite(found.sample_time_s):
+        raise BadAnswerError("description: the width of a port, or the sample time, is not possible")
+    return found
+
+
+def _channels(names: tuple[str, ...] | None) -> tuple[str, ...]:
+    """Names of the channels of a record: those that every one has, and the controller's own.
+
+    Raises
+    ------
+    BadAnswerError
+        When they are others.
+    """
+    if names is None or names[: len(RECORDED)] != RECORDED:
+        raise BadAnswerError("channels: those that every record has are missing")
+    own = names[len(RECORDED) :]
+    try:
+        for name in own:
+            check_channel(name)
+    except DoorError as error:
+        raise BadAnswerError(f"channels: {_bounded(str(error))[:200]}") from None
+    if len(set(own)) < len(own):
+        raise BadAnswerError("channels: a name is there twice")
+    return names
+
+
+def _samples(file: Path, channels: tuple[str, ...], rows: int) -> NDArray[np.float64]:
+    """Rows of a record; those of the plant are finite."""
+    columns = len(channels)
+    data = _bytes_of(file, rows * columns * _NUMBER.itemsize)
+    if data is None:
+        raise BadAnswerError("there is no record")
+    samples = np.frombuffer(data, _NUMBER).reshape(rows, columns)
+    for first in range(0, rows, _ROWS_AT_ONCE):
+        finite = np.isfinite(samples[first : first + _ROWS_AT_ONCE, : len(RECORDED)]).all(axis=0)
+        if not finite.all():
+            raise BadAnswerError(f"the record's {RECORDED[int(np.argmin(finite))]} is not finite")
+    return samples.astype(np.float64, copy=False)
+
+
+def _bytes_of(file: Path, size: int | None) -> bytearray | None:
+    """All of an ordinary file, which is to have a size where that is known; None where there is none.
+
+    Raises
+    ------
+    BadAnswerError
+        When it is no ordinary file, has another size, or cannot be read.
+    """
+    # Neither a link nor a pipe is followed or waited for: whoever may write here may put anything in its place.
+    flags = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    try:
+        descriptor = os.open(file, flags)
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise BadAnswerError(f"{file.name} cannot be read ({error.strerror or error})") from None
+    try:
+        found = os.fstat(descriptor)
+        if not stat.S_ISREG(found.st_mode):
+            raise BadAnswerError(f"{file.name} is no ordinary file")
+        if found.st_size > _LONGEST_HEAD if size is None else found.st_size != size:
+            due = f"at most {_LONGEST_HEAD}" if size is None else str(size)
+            raise BadAnswerError(f"{file.name} has {found.st_size} bytes; {due} are due")
+        data = bytearray(found.st_size)
+        with os.fdopen(descriptor, "rb", closefd=False) as stream:
+            read = stream.readinto(data)
+    except OSError as error:
+        raise BadAnswerError(f"{file.name} cannot be read ({error.strerror or error})") from None
+    finally:
+        os.close(descriptor)
+    if read != len(data):
+        raise BadAnswerError(f"{file.name} ends too early")
+    return data

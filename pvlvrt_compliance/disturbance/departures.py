@@ -1,0 +1,53 @@
+"""The instant of a step, to the sample: a voltage of one cycle shows that there is one, and that up to a cycle late."""
+
+import numpy as np
+
+from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
+
+_LEAST_PU = 0.01  # that a phase differs by from a cycle before (chosen): half of the smallest step that is looked for
+_ABOVE_BEFORE = 3.0  # times what it differed by before, of noise or of another frequency (chosen)
+_SOUGHT_CYCLES = 1.05  # before the instant: a step is seen within a cycle, and a sample or two
+
+
+def departure_s(waveforms: Waveforms, kind: str, seen_s: float, cycle_s: float, peak_v: float) -> float:
+    """When the voltages leave what they were a cycle before.
+
+    Parameters
+    ----------
+    waveforms : Waveforms
+        The record.
+    kind : str
+        ``u`` or ``u0``.
+    seen_s : float
+        When a one-cycle voltage shows the step (s).
+    cycle_s : float
+        Of the nominal frequency (s).
+    peak_v : float
+        Nominal amplitude of a phase (V).
+
+    Returns
+    -------
+    float
+        The first sample (s) at which a phase differs by more than it did in the cycle before, and by 0.01 pu at least;
+        ``seen_s`` where there is none, or the record does not reach far enough back at one step.
+    """
+    before_s = seen_s - _SOUGHT_CYCLES * cycle_s
+    segment = next((part for part in waveforms if part.t0_s <= before_s - 2 * cycle_s and part.end_s >= seen_s), None)
+    if segment is None:
+        return seen_s
+    usual = _differences(segment, kind, before_s - cycle_s, before_s, cycle_s).max() / peak_v
+    sought = _differences(segment, kind, before_s, seen_s, cycle_s) / peak_v
+    departed = np.flatnonzero(sought > max(_LEAST_PU, _ABOVE_BEFORE * usual))
+    return (
+        seen_s if not len(departed) else segment.t0_s + segment.dt_s * float(segment.index_at(before_s) + departed[0])
+    )
+
+
+def _differences(segment: Segment, kind: str, begin_s: float, end_s: float, cycle_s: float) -> Samples:
+    """How far the phases are from a cycle before, at each sample that of the phase with the most (V), shape (n,)."""
+    begin, end = segment.index_at(begin_s), segment.index_at(end_s) + 1
+    t_s = segment.dt_s * np.arange(begin, end)
+    grid_s = segment.dt_s * np.arange(end)
+    phases = (phase[:end] for phase in segment.three_phase(kind))
+    found: Samples = np.abs([x[begin:] - np.interp(t_s - cycle_s, grid_s, x) for x in phases]).max(axis=0)
+    return found
