@@ -165,7 +165,7 @@ def test_settling_can_be_recorded(opened):
 def test_active_power_that_is_asked_for_is_what_there_is(opened, irradiance_w_m2, events, expected_kw):
     """All that the array can give (105 kW at 200 W/m2, 411 kW at 800), and at most the nominal power."""
     scenario = Scenario(sag=Sag(depth=0.0), duration_s=0.1, after_s=0.1, irradiance_w_m2=irradiance_w_m2, events=events)
-    (segment,) = opened("told.py:Told")(scenario, parameters_from(()))
+    (segment,) = opened("informed.py:Informed")(scenario, parameters_from(()))
     asked, available = segment["p_set_w"] / 1e3, segment["p_available_w"] / 1e3
     for power in (asked[0], asked[-1]):
         assert min(abs(power - expected) / expected for expected in expected_kw) < 0.03
@@ -181,7 +181,7 @@ def test_plant_data_that_a_controller_is_told(opened):
     """Filter, link and nominal DC voltage (Table 1), as they are set."""
     scenario = Scenario(sag=Sag(depth=0.0), duration_s=0.1, after_s=0.1)
     settings = ("plant.filter_inductance_h=0.0002", "plant.dc_link_capacitance_f=0.05")
-    (segment,) = opened("told.py:Told")(scenario, parameters_from(settings))
+    (segment,) = opened("informed.py:Informed")(scenario, parameters_from(settings))
     assert segment["l_h"][0] == 0.0002
     assert segment["r_ohm"][0] == 0.001
     assert segment["c_f"][0] == 0.05

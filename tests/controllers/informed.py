@@ -1,7 +1,7 @@
 """A controller that records what it is told, and holds what modulates."""
 
 
-class Told:
+class Informed:
     """Open loop."""
 
     sample_time_s = 1e-3
