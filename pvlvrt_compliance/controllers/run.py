@@ -23,6 +23,7 @@ from pvlvrt_compliance.simulation.door.exchange import (
     LARGEST,
     PROGRESSES,
     SIGNALS,
+    SWITCHES,
 )
 from pvlvrt_compliance.simulation.door.table import HELD_EACH, HELD_ONCE, RUNS_FREE, DoorTable, Timing
 from pvlvrt_compliance.simulation.electronics import hardware_of
@@ -190,6 +191,8 @@ def _explained(status: int, t: float, table: DoorTable, said: str) -> str:
     text = f"{_REASONS[status]} at {when(t)}"
     if status in (outcome.OUTPUT_NOT_FINITE, outcome.OUTPUT_OUT_OF_RANGE):
         names = VOLTAGES if table.in_volts else MODULATING
+        switches = [name for name in SWITCHES if not math.isfinite(table.commands[COMMANDS.index(name)])]
+        names = (*names, *switches)
         text += f": {', '.join(f'{name} = {table.commands[COMMANDS.index(name)]:g}' for name in names)}"
         if status == outcome.OUTPUT_OUT_OF_RANGE:
             text += f" (at most {LARGEST[names[0]]:g})"

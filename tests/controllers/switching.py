@@ -38,6 +38,28 @@ class WithoutRestart(Switching):
         return super().step(y)[:-1]
 
 
+class NoSwitch(Switching):
+    """Its block is no number from 1.3 s on."""
+
+    switches = ("block",)
+
+    def step(self, y):
+        """The same voltages."""
+        return (*super().step(y)[:3], math.nan if y.time_s > 1.3 else 0.0)
+
+
+class WoundUp(Switching):
+    """It blocks from 1.3 s on, and commands a voltage beyond all limits then."""
+
+    switches = ("block",)
+
+    def step(self, y):
+        """The same voltages, until it blocks."""
+        blocks = y.time_s > 1.3
+        m = super().step(y)[:3]
+        return (*(1e3 * x for x in m), True) if blocks else (*m, False)
+
+
 class Wrong(Switching):
     """It names a switch that there is not."""
 

@@ -95,3 +95,15 @@ def test_switches_that_are_none(opened, cls, said):
     with pytest.raises(PvlvrtError) as error:
         opened(f"switching.py:{cls}")(SCENARIO, parameters_from(()))
     assert said in str(error.value)
+
+
+def test_a_switch_that_is_no_number_is_an_error(run):
+    """It is told with its name and the instant, before a trip as any other command."""
+    with pytest.raises(PvlvrtError, match=r"a command of the controller is not a finite number at .*, block = nan"):
+        run(cls="NoSwitch")
+
+
+def test_what_a_blocked_bridge_is_commanded_does_not_count(run):
+    """Regulators wind up while nothing they command acts: no range holds then."""
+    segment = run(cls="WoundUp")
+    assert currents(segment)[segment.t_s > 0.12].max() == 0

@@ -116,8 +116,9 @@ def _settled(requirement: Oscillation, evidence: Evidence, stretch: Stretch) -> 
 
 def _settling(requirement: Oscillation, evidence: Evidence, stretch: Stretch) -> Number:
     """What is left to the transient: the array's, which moves v_DC to another point, takes longer than the grid's."""
-    of_array = stretch.begin_s in evidence.disturbance.steps_of("irradiance")
-    return requirement.array_settling_s if of_array else requirement.settling_s
+    # Once for all stretches, of which there may be thousands.
+    of_array = evidence.once((KIND, "of the array"), lambda: frozenset(evidence.disturbance.steps_of("irradiance")))
+    return requirement.array_settling_s if stretch.begin_s in of_array else requirement.settling_s
 
 
 def _powers(evidence: Evidence, settled: slice) -> list[_Power]:

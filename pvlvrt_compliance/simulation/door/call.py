@@ -22,6 +22,7 @@ from pvlvrt_compliance.simulation.door.exchange import (
     LARGEST,
     LATER,
     LATEST_CALL,
+    ON,
     SEEN_I,
     SEEN_U,
     SIGNAL,
@@ -138,9 +139,13 @@ def call(door: DoorTable) -> int:
     scatter(door.outputs, door.commands)
     if door.in_a_frame:
         put_phases(door.commands, COMMANDED_U, out_of_the_frame(door.commands), 0.0)
+    x = door.commands
+    if not math.isfinite(x[COMMAND.trip] + x[COMMAND.block] + x[COMMAND.restart]):
+        return OUTPUT_NOT_FINITE
+    # A bridge that is blocked takes no voltage, however far regulators have wound up.
     if door.in_volts:
-        return fault_of(phases_at(door.commands, COMMANDED_U), _U_MOST)
-    return fault_of(phases_at(door.commands, COMMANDED_M), _M_MOST)
+        return fault_of(phases_at(x, COMMANDED_U), _U_MOST if x[COMMAND.block] < ON else math.inf)
+    return fault_of(phases_at(x, COMMANDED_M), _M_MOST if x[COMMAND.block] < ON else math.inf)
 
 
 @kernel

@@ -25,7 +25,7 @@ def all_off() -> Switches:
 
 @kernel
 def switches_of(door: DoorTable) -> Switches:
-    """Switches as they are commanded; what is not a number is off."""
+    """Switches as they are commanded."""
     x = door.commands
     return Switches(trip=x[COMMAND.trip] >= ON, block=x[COMMAND.block] >= ON, restart=x[COMMAND.restart] >= ON)
 
