@@ -30,7 +30,7 @@ Measured on {date}: {machine}.
 Medians. A ratio is that of each run to the reference run in turn with it, so that a machine whose clock wanders, or
 that others use, moves it little. `python benchmarks/table.py --json FILE --page docs/speed.md` measures it and writes
 this page; nothing of it is a test. What makes runs quicker: [several cores and machines](jobs.md),
-[records that are reused](reuse.md).
+[records that are reused](reuse.md), [settling once](settle-once.md).
 """
 
 

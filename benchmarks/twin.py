@@ -191,7 +191,7 @@ def _member(value: Any) -> Any:
 def _unpacked(named_tuple: Any, structure: Any) -> Any:
     """NamedTuple with the values of a structure of ctypes."""
     values = {}
-    for name, hint in get_type_hints(named_tuple).items():
+    for name, hint in _hints(named_tuple).items():
         value = getattr(structure, name)
         values[name] = complex(*value) if hint is complex else value if hint in _SCALARS else _unpacked(hint, value)
     return named_tuple(**values)
@@ -211,6 +211,7 @@ class Arguments(NamedTuple):
     door: DoorTable | None  # nor this
     plan: RecordingPlan  # the twin records every period
     samples: NDArray[np.float64]
+    k: int = 0  # samples before; the twin begins
 
     @property
     def plant_steps(self) -> int:
@@ -277,6 +278,8 @@ class Twin:
             raise ValueError("the twin writes float64 samples, each channel in one piece")
         if a.hardware is not None:
             raise ValueError("the twin has ideal hardware only")
+        if a.k != 0:
+            raise ValueError("the twin begins at the beginning")
         if a.door is not None:
             raise ValueError("the twin has the bundled controller only")
         if a.controller_params.precision.double is None:

@@ -4,6 +4,7 @@ The command line turns them into one clear line and an exit status; library user
 """
 
 import errno
+import signal
 from collections.abc import Callable, Iterable, Sequence
 
 from pvlvrt_compliance.texts import each_line, printable
@@ -111,3 +112,14 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return ``'; did you mean "x" or "y"?'`` for the near misses of a word, or an empty string."""
     near = [f'"{match}"' for match in near_misses(word, known)]
     return f"; did you mean {' or '.join(near)}?" if near else ""
+
+
+class Stopped(BaseException):
+    """A signal has asked this process to end: SIGINT, or SIGTERM, which a CI service, `timeout` and docker send.
+
+    No `KeyboardInterrupt`, of which libraries make what they like.
+    """
+
+    def __init__(self, number: int = signal.SIGINT) -> None:
+        super().__init__(number)
+        self.number = number

@@ -41,6 +41,17 @@ def kind_of(mode: int) -> str | None:
     return next((words for is_kind, words in _KINDS if is_kind(mode)), "not an ordinary file")
 
 
+def mode_of(path: Path) -> int:
+    """The mode of what a path leads to; 0 where there is nothing, or nothing that can be looked at.
+
+    `Path.exists` and its like raise where a name is too long, or lies in a folder that cannot be entered.
+    """
+    try:
+        return path.stat().st_mode
+    except (OSError, ValueError):
+        return 0
+
+
 def content_of(path: Path, most_bytes: int, within: Path | None = None) -> bytes:
     """The bytes of an ordinary file.
 
@@ -86,6 +97,14 @@ def is_within(path: Path, folder: Path) -> bool:
     try:
         return path.resolve().is_relative_to(folder.resolve())
     except (OSError, ValueError, RuntimeError):
+        return False
+
+
+def is_there(file: Path) -> bool:
+    """Whether this is a file, as far as that can be seen: no text is too long to be asked for as a name."""
+    try:
+        return file.is_file()
+    except OSError:
         return False
 
 

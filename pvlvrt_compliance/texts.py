@@ -3,7 +3,8 @@ r"""Texts that are not ours: the one place that they pass before anybody sees th
 What a controller says, what a file of others holds, how a file is called, what is typed: all of it may be made to be
 obeyed, by a terminal, by a CI service, by the reader's eyes. `printable` makes text of it that is seen as it is. Texts
 come in at few borders, and pass it there: the errors of this package (`errors.PvlvrtError`), its results
-(`results.text`), what the process of a controller answers (`controllers.description`), channels of a record by others
+(`results.text`; those of a cluster's worker once more where they arrive, `executors.cluster.dispatch`), what the
+process of a controller answers (`controllers.description`), channels of a record by others
 (`waveforms.recording`), and what a command prints of anything else (`cli.telling`). What is particular to a sink stays
 with it: quoting of HTML, XML, JSON and Markdown, glyphs of the PDF, lines of a stream as they fall once it has folded
 them.
@@ -76,6 +77,8 @@ def printable(text: str, longest: int | None = LONGEST) -> str:
 def one_line(text: str, longest: int | None = LONGEST_NAME) -> str:
     """A name, or whatever else is one line: `printable`, and its lines are joined by a blank."""
     begin = text if longest is None else text[: 2 * longest + 1]
+    if begin.isascii() and begin.isprintable():
+        return printable(text, longest)
     lines = printable(begin, None).split("\n")
     joined = lines[0] if len(lines) == 1 else " ".join(line.strip() for line in lines if line.strip())
     return joined if longest is None or len(joined) <= longest else _cut(joined, longest, _characters(text))

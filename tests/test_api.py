@@ -1,10 +1,7 @@
 """What the package exports: in scripts, in notebooks, and as its page says."""
 
 import json
-import os
 import re
-import shutil
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -229,7 +226,7 @@ def test_what_check_refuses(tmp_path):
         check(tmp_path / "bad.toml", output=tmp_path / "out")
     with pytest.raises(UsageError, match="frequency: must be"):
         check(IEC, frequency=10.0, output=tmp_path / "out")
-    with pytest.raises(UsageError, match="give its class"):
+    with pytest.raises(UsageError, match="give a class"):
         check(IEC, sag=0.5, controller=3, output=tmp_path / "out")
     with pytest.raises(UsageError, match=r"^output: a folder is needed"):
         check(IEC, sag=0.5, output="")
@@ -253,67 +250,3 @@ def test_settings_as_a_mapping_or_as_they_are_typed(monkeypatch):
     assert one.provenance["parameters"] == other.provenance["parameters"]
     assert one.provenance["parameters"]["controller"]["power_strategy"] == "balanced"
     assert one.tests == other.tests
-
-
-def test_parameters_of_a_class(project, monkeypatch, capfd):
-    """They reach a class in a process of its own; nothing is printed, and the file is named."""
-    monkeypatch.chdir(project)
-    monkeypatch.syspath_prepend(str(project))
-    monkeypatch.delitem(sys.modules, "controller", raising=False)
-    from controller import Controller
-
-    results = check(IEC, controller=Controller, sag=0.5, settings={"controller.dsogi_gain": 1.0})
-    assert results.provenance["controller"] == "controller.py:Controller"
-    assert results.provenance["controller_parameters"]["dsogi_gain"] == 1.0
-    assert "controller=Controller" in results.provenance["command"]
-    assert capfd.readouterr() == ("", "")
-    monkeypatch.delitem(sys.modules, "controller")
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("controller", ["Controller", "None"])
-def test_a_controllers_file_that_begins_a_run(project, tmp_path, controller):
-    """It is refused in words, not run within its own run without end."""
-    runs = f"from pvlvrt_compliance import check\ncheck('{IEC}', sag=0.5, controller={controller})\n"
-    (tmp_path / "mine.py").write_text((project / "controller.py").read_text() + runs)
-    command = ("-m", "pvlvrt_compliance", "--profile", IEC, "--sag", "50%", "--controller", "mine.py:Controller")
-    done = subprocess.run(
-        [sys.executable, *command], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=PATIENCE_S
-    )
-    assert done.returncode == 2
-    assert 'put what does under `if __name__ == "__main__":`' in done.stderr
-
-
-INTERRUPTED = """
-import sys
-from controller import Controller
-from pvlvrt_compliance import check
-given = Controller if sys.argv[1] == "apart" else lambda: Controller()
-check("iec61400-21", controller=given, output="out", progress=lambda *words: print(*words, flush=True))
-"""
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(os.name == "nt", reason="Windows cannot send a signal to one process")
-@pytest.mark.parametrize("where", ["apart", "here"])
-def test_ctrl_c_in_a_script(project, tmp_path, where):
-    """It ends, whatever its controller is at, and says what is kept."""
-    shutil.copy(project / "controller.py", tmp_path)
-    (tmp_path / "script.py").write_text(INTERRUPTED)
-    process = subprocess.Popen(
-        [sys.executable, "script.py", where], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    assert [process.stdout.readline().split()[2] for _ in range(3)] == ["0", "1", "2"]
-    process.send_signal(signal.SIGINT)
-    _, err = process.communicate(timeout=PATIENCE_S)
-    assert process.returncode == -signal.SIGINT
-    assert err.endswith("KeyboardInterrupt\n2 of 27 tests were finished and are kept in out/interrupted\n")
-    assert len(read_results(tmp_path / "out" / "interrupted" / "results.json").tests) == 2
-
-
-def test_a_controllers_file_with_the_usual_guard(project, tmp_path):
-    """What runs as a script alone is not run with the controller."""
-    guarded = (project / "controller.py").read_text() + '\nif __name__ == "__main__":\n    raise SystemExit("run")\n'
-    (tmp_path / "mine.py").write_text(guarded)
-    results = check(IEC, sag=0.5, controller=f"{tmp_path / 'mine.py'}:Controller")
-    assert results.status in (Status.PASS, Status.FAIL)

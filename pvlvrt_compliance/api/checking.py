@@ -11,7 +11,7 @@ from pvlvrt_compliance.api.given import File, assignments, call, listed, spell, 
 from pvlvrt_compliance.output import output_in, report_details
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.results import Results
-from pvlvrt_compliance.study.job import Asked, Factory, make_job
+from pvlvrt_compliance.study.job import Asked, Given, make_job
 
 if TYPE_CHECKING:
     from pvlvrt_compliance.scenario.events import Event
@@ -23,7 +23,7 @@ _LOG = logging.getLogger("pvlvrt_compliance")
 def check(
     profiles: File | Profile | Sequence[File | Profile],
     *,
-    controller: File | Factory | None = None,
+    controller: File | Given | None = None,
     mapping: File | None = None,
     sag: str | float | None = None,
     phases: str | None = None,
@@ -40,6 +40,7 @@ def check(
     events: "File | Sequence[Event] | None" = None,
     recordings: File | None = None,
     settings: Mapping[str, Any] | Sequence[str] = (),
+    allow_out_of_range: bool = False,
     fidelity: str | None = None,
     tests: str | Sequence[str] = (),
     skip: str | Sequence[str] = (),
@@ -58,9 +59,11 @@ def check(
     baseline_tolerance: str | float | None = None,
     reuse: File | None = None,
     reuse_size: str | float | None = None,
+    settle_once: bool = False,
     allow_unjudged: bool = False,
     jobs: int | str | None = None,
     cluster: str | None = None,
+    debug: bool = False,
     progress: "Progress | None" = None,
 ) -> Results:
     """Run the tests of profiles, or one sag of one's own, and judge them: what the command does.
@@ -71,9 +74,10 @@ def check(
     ----------
     profiles : str, path, Profile, or a sequence of them
         Names, files, or profiles that are loaded already.
-    controller : str, class or function, optional
+    controller : str, class, function or object, optional
         The bundled one unless it is given: a specification as of ``--controller`` (``"bundled"`` is that one, too), a
-        class, or a function that makes a controller. What runs it, this process or one of its own, is in docs/api.md.
+        class, a function that makes a controller, or one that is made already, of which each test has a copy. What runs
+        it, this process or one of its own, is in docs/api.md.
     mapping : str or path, optional
         File that ties the controller's ports to the plant.
     sag : str or float, optional
@@ -89,6 +93,8 @@ def check(
         Folder that recordings may lie in besides that of the file that names them.
     settings : mapping or sequence of str
         Parameters, ``{"controller.pr_integral_gain": 0.2}`` or ``["controller.pr_integral_gain=0.2"]``.
+    allow_out_of_range : bool
+        Whether parameters of a controller of one's own may be out of the ranges that it states; the results name each.
     fidelity : str, optional
         ``"averaged"`` or ``"switched"``.
     tests, skip : str or sequence of str
@@ -120,6 +126,9 @@ def check(
         Folder of stored records: what is there, and of which nothing has changed, is not simulated again.
     reuse_size : str or float, optional
         What they may take: ``"2GB"``, or in GB; by default 10.
+    settle_once : bool
+        Whether tests that start from the same settled state go on from one, which is simulated once. The results are
+        the same; a controller that does not allow it says so in its notes.
     allow_unjudged : bool
         As of the command, for `exit_status`.
     jobs : int or str, optional
@@ -130,6 +139,9 @@ def check(
     cluster : str, optional
         Address of a dask scheduler, whose workers run the tests; or ``"local"``, which starts one here with as many
         workers as `jobs` says (put the call under ``if __name__ == "__main__":``). Needs the extra of that name.
+    debug : bool
+        Whether a controller by its specification, too, runs in this process, without limits and one test after the
+        other: breakpoints hold there.
     progress : callable, optional
         Called before each test with its profile and id, the number of tests that are finished, and of all.
 
@@ -169,6 +181,7 @@ def check(
         "events": fspath(events) if isinstance(events, str | PathLike) else events,
         "recordings": None if recordings is None else fspath(recordings),
         "settings": assignments(settings),
+        "allow_out_of_range": allow_out_of_range,
         "fidelity": fidelity,
         "tests": texts(tests),
         "skip": texts(skip),
@@ -183,7 +196,9 @@ def check(
         "jobs": jobs,
         "reuse": None if reuse is None else fspath(reuse),
         "reuse_size": reuse_size,
+        "settle_once": settle_once,
         "cluster": cluster,
+        "debug": debug,
     }
     asked = Asked(**given)
     job = make_job(asked, spell, last_run=None if output is None else fspath(output))

@@ -58,4 +58,6 @@ def _written(value: Any) -> str:
     if isinstance(value, tuple):
         return f"[{', '.join(map(_written, value))}]"
     made: Callable[..., Any] | None = value if callable(value) else None
+    if made is None and hasattr(value, "sample_time_s"):  # a controller, of which nobody knows how it was made
+        return f"{type(value).__qualname__}(...)"
     return repr(value) if made is None else str(getattr(made, "__qualname__", type(made).__name__))

@@ -14,6 +14,7 @@ from pvlvrt_compliance.evidence.cursors import cursors_of
 from pvlvrt_compliance.evidence.evidence import Evidence, after_trip
 from pvlvrt_compliance.evidence.instruments import BY_DEFINITION, Instruments
 from pvlvrt_compliance.measure.quantities import MeasuredWindows
+from pvlvrt_compliance.measure.silence import SILENT
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.profile.requirements import Requirement
@@ -81,6 +82,7 @@ def evaluate(
         evidence.forget()  # else the record stays in memory until the interpreter looks for what nobody needs
 
 
+@SILENT
 def evidence_of(
     profile: Profile,
     test: TestCase,
@@ -95,6 +97,7 @@ def evidence_of(
     return collect(profile, test, waveforms, nominal, available_power_w, disturbance, release, instruments)
 
 
+@SILENT
 def judge_record(profile: Profile, test: TestCase, evidence: Evidence) -> TestResult:
     """Judge the evidence of one record by every requirement of a profile, as `evaluate` does."""
     verdicts, drawn = _judge_all(profile, test, evidence)

@@ -6,6 +6,7 @@ import numpy as np
 
 from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.evidence.no_load import has_source
+from pvlvrt_compliance.measure.durations import median_over_time
 from pvlvrt_compliance.profile.procedure import Conditions
 from pvlvrt_compliance.waveforms.joining import window_on_one_grid
 from pvlvrt_compliance.waveforms.trip_causes import DC_OVERVOLTAGE, in_words
@@ -52,7 +53,8 @@ def _wrong_order(evidence: Evidence) -> str | None:
     phasors = phasors[:, np.isfinite(phasors).all(axis=0)]
     if not phasors.size:
         return None
-    positive, negative = np.median(phasors, axis=1)[:2]
+    even = np.broadcast_to(1.0, phasors.shape[1])
+    positive, negative = (median_over_time(x, even) for x in phasors[:2])
     if not negative > positive:
         return None
     return f"negative phase order: V- {negative:.3f} pu and V+ {positive:.3f} pu before the sag {place}".rstrip()

@@ -22,7 +22,7 @@ from pvlvrt_compliance.cli.guarding import guarded
 from pvlvrt_compliance.cli.merge import merge
 from pvlvrt_compliance.cli.schema import schema
 from pvlvrt_compliance.cli.telling import say_aside, tell
-from pvlvrt_compliance.cli.typed import read_what_is_given, understood
+from pvlvrt_compliance.cli.typed import last_of_each_flag, read_what_is_given, understood
 from pvlvrt_compliance.compiled.notes import tell_in_lines
 from pvlvrt_compliance.controllers.process.command import STOPS, become_the_command, leave, status_of, words_of
 from pvlvrt_compliance.errors import PvlvrtError, UnfinishedError
@@ -69,6 +69,7 @@ def _run(arguments: Sequence[str]) -> int:
     try:
         command = _commands_for(arguments)
         called, words, rest = _called(command, understood(command, arguments))
+        rest = last_of_each_flag(called, rest)
         read_what_is_given(called, rest)
         status = called.main(
             args=rest,
@@ -144,7 +145,7 @@ def _complain_of(error: PvlvrtError | OSError) -> int:
         return _complain(str(error), UNWRITTEN_STATUS)
     if isinstance(error, OSError) and error.filename is None:  # of all that is written, one stream has no name
         return _complain(unwritten(error), UNWRITTEN_STATUS)
-    return _complain(str(error))
+    return _complain(f"{error.filename}: {error.strerror}" if isinstance(error, OSError) else str(error))
 
 
 def _complain(message: str, status: int = USAGE_STATUS) -> int:

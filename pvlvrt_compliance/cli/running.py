@@ -60,7 +60,7 @@ def run(
                 details=report_details(language, fields_of(report_fields, spell=spell), spell=spell),
             ),
             allow_unjudged=allow_unjudged,
-            watch=progress_bar(len(job.tests), quiet),
+            watch=progress_bar(len(job.tests), quiet or job.debug),  # it would draw over a debugger's lines
             tell=tell,
             settings=settings,
             kept=kept.append,

@@ -15,8 +15,13 @@ if TYPE_CHECKING:
 
 
 def tell(message: str) -> None:
-    """Say something to whoever reads stderr; that nobody does changes nothing."""
-    say_aside(f"pvlvrt-check: {message}")
+    """Say something to whoever reads stderr; that nobody does changes nothing.
+
+    Every line but the first is further in, so that no line of a text of others, a name that has two, passes for ours.
+    """
+    first, *more = message.split("\n")
+    further = [line if line.startswith("  ") else f"  {line.strip()}" for line in more if line.strip()]
+    say_aside("\n".join([f"pvlvrt-check: {first}", *further]))
 
 
 def say_aside(message: str) -> None:

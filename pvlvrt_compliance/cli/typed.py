@@ -55,6 +55,26 @@ def read_what_is_given(command: Any, words: Sequence[str]) -> None:
         command.params = [x for x in command.params if x.required or not _names(x) or given & {*_names(x)}]
 
 
+def last_of_each_flag(command: Any, words: Sequence[str]) -> list[str]:
+    """The words of a command without a flag that is taken back later (``--no-...``), and without what took back one."""
+    options = {name: param for param in command.params for name in _names(param)}
+    last: dict[str, int] = {}
+    flags: list[int] = []
+    place = 0
+    while place < len(words) and words[place] != "--":
+        option = options.get(words[place])
+        if option is not None and option.is_flag:
+            flags.append(place)
+            last[words[place]] = place
+        place += 1 + _takes_a_value(option)
+    over = {at for at in flags if last.get(_opposite(words[at]), -1) > at}
+    return [word for at, word in enumerate(words) if at not in over]
+
+
+def _opposite(flag: str) -> str:
+    return f"--{flag[5:]}" if flag.startswith("--no-") else f"--no-{flag[2:]}"
+
+
 def _with_explicit_pair(arguments: Sequence[str]) -> list[str]:
     """Read ``--two-phase ab`` and ``--two-phase=ab`` as ``--two-phase --phases ab``: typer has no optional values."""
     given: list[str] = []

@@ -44,8 +44,12 @@ def compiled(function: Callable[..., Any], arguments: tuple[Any, ...], options: 
     result = made.overloads[signature]
     returned = _written(result.signature.return_type)
     codegen, needs = result.target_context.codegen(), {*_needed(result.library._final_module)}
+    memory = {name for name in needs if name.startswith("NRT_")}
+    given = result.signature.return_type
+    if isinstance(given, types.Array) or (memory - {_END_OF_MEMORY} and _holds_array(given)):
+        raise NotFlatError("an array")
     module = _entry(result)
-    if {name for name in needs if name.startswith("NRT_")} == {_END_OF_MEMORY}:
+    if memory == {_END_OF_MEMORY}:
         needs.remove(_END_OF_MEMORY)
         _define_nothing(module, _END_OF_MEMORY)
     entry = binding.parse_assembly(str(module))
@@ -168,13 +172,17 @@ class _Words:
             self.put(builder.zext(value, ir.IntType(8)))
         elif isinstance(of, types.Integer):
             self.put((builder.sext if of.signed else builder.zext)(value, _WORD) if of.bitwidth < 64 else value)
-        elif not isinstance(of, types.NoneType):
+        elif not isinstance(of, types.NoneType | types.Array):  # an array is one of the caller's
             self.put(value)
 
 
+def _holds_array(of: Any) -> bool:
+    return isinstance(of, types.Array) or (isinstance(of, types.BaseTuple) and any(map(_holds_array, of)))
+
+
 def _written(of: Any) -> Any:
-    """Result of a type of numba's, as `flat.Result` reads it."""
-    if isinstance(of, types.NoneType):
+    """Result of a type of numba's, as `flat.Result` reads it; an array is one of the caller's, who has it."""
+    if isinstance(of, types.NoneType | types.Array):
         return NONE
     if isinstance(of, types.BaseTuple):
         kind = getattr(of, "instance_class", tuple)

@@ -20,6 +20,8 @@ def say_not_kept(why: object) -> None:
     _say_once("not kept", f"compiled code is not kept, so the next run compiles it anew: {why}")
 
 
+_OURS = "of_pvlvrt_check"  # mark of what formats warnings here
+
 _said: set[str] = set()
 
 
@@ -34,6 +36,8 @@ def tell_in_lines() -> None:
     """Have these warnings, and no others, come as a line each of the command, whatever Python's options say of them."""
     warnings.filterwarnings("always", category=KeptFileWarning)
     others = warnings.formatwarning
+    if hasattr(others, _OURS):  # many commands run in one process: each of them would go through all before it
+        return
 
     def formatted(
         message: Warning | str, category: type[Warning], filename: str, lineno: int, line: str | None = None
@@ -42,4 +46,5 @@ def tell_in_lines() -> None:
             return f"pvlvrt-check: {printable(str(message))}\n"
         return each_line(others(message, category, filename, lineno, line))
 
+    setattr(formatted, _OURS, True)
     warnings.formatwarning = formatted

@@ -16,7 +16,12 @@ from pvlvrt_compliance.control.dc_voltage_regulator import (
 from pvlvrt_compliance.control.lvrt import LvrtParams, lvrt_step
 from pvlvrt_compliance.control.modulator import ModulatorParams, modulate
 from pvlvrt_compliance.control.mppt import MpptParams, MpptState, mppt_step
-from pvlvrt_compliance.control.synchronisation import SynchronisationParams, SynchronisationState, synchronise
+from pvlvrt_compliance.control.synchronisation import (
+    SynchronisationParams,
+    SynchronisationState,
+    synchronise,
+    with_arrays_of,
+)
 from pvlvrt_compliance.kernel import kernel
 from pvlvrt_compliance.measured import Measured
 
@@ -49,6 +54,11 @@ class ControllerState(NamedTuple):
     dc_voltage: DcVoltageRegulatorState
     mppt: MpptState
     current: CurrentRegulatorState
+
+
+def joined(before: ControllerState, x: ControllerState) -> ControllerState:
+    """State at the end of a run that began in another, whose arrays it has written in, and which are these now."""
+    return x._replace(sync=with_arrays_of(before.sync, x.sync))
 
 
 class ControllerSignals(NamedTuple):

@@ -49,6 +49,13 @@ def locked(u_pos: complex, w: float, p: SynchronisationParams, T: float) -> Sync
     )
 
 
+def with_arrays_of(before: SynchronisationState, x: SynchronisationState) -> SynchronisationState:
+    """The same with the arrays of the state that the run began with, as they are after it."""
+    if before.dsc is None or x.dsc is None:
+        return x
+    return x._replace(dsc=x.dsc._replace(line=before.dsc.line))
+
+
 @kernel
 def advance_chosen(
     msogi: MsogiFllState | None,

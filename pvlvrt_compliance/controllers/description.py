@@ -23,7 +23,7 @@ class Port:
     width : int
         Numbers that it holds.
     note : str
-        Why it is not mapped, where that needs saying.
+        Why it is not mapped and what it could be, or that others are given the same, where that needs saying.
     """
 
     name: str
@@ -64,7 +64,7 @@ class Description:
     digest : str
         SHA-256 of its file, or of what names it (hexadecimal).
     sample_time_s : float
-        From one call to the next (s).
+        From one call to the next (s); 0 where it is not known, of one that cannot be run.
     notes : tuple of str
         What else there is to know of it.
     mapping : str or None

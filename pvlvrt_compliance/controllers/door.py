@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol
 
 from pvlvrt_compliance.controllers.description import Description, Value
 from pvlvrt_compliance.errors import UsageError
@@ -48,6 +48,8 @@ class Door(Protocol):
         Parameters that the user has set.
     mapping : str, optional
         Mapping file.
+    allow_out_of_range : bool
+        Whether a parameter may be out of the range that the controller states for it.
 
     Raises
     ------
@@ -64,7 +66,17 @@ class Door(Protocol):
     suffixes: ClassVar[tuple[str, ...]] = ()
     """How the names of its files end, if by that they are known: ``.fmu``."""
 
-    def __init__(self, spec: str, given: Mapping[str, Value], mapping: str | None = None) -> None: ...
+    bare: bool = False
+    """Whether its ports are tied to nothing: each number of them is a signal of its own (`mapping.bare`). Set before it
+    is described or opened."""
+
+    keeps_faults: ClassVar[bool] = False
+    """Whether it takes `faults.Faults` as a fourth argument, and goes on behind those that are kept as far as it can:
+    it describes what it knows, and `open` raises the first fault that stands in its way."""
+
+    def __init__(
+        self, spec: str, given: Mapping[str, Value], mapping: str | None = None, *, allow_out_of_range: bool = False
+    ) -> None: ...
 
     def describe(self) -> Description:
         """Name, ports, parameters and sample time, known before it is opened.
@@ -89,6 +101,27 @@ class Door(Protocol):
         DoorError
             When it refuses.
         """
+
+    def snapshot(self) -> Any:
+        """All that the open controller remembers between two samples, to be pickled: another one goes on from there.
+
+        Raises
+        ------
+        DoorError
+            When that cannot be had, with the reason.
+        """
+        raise DoorError("a controller of its kind does not give what it remembers")
+
+    def resume(self, nominal: Nominal, snapshot: Any) -> DoorCall:
+        """Make a controller, in this or another process, that goes on from a snapshot; in place of `open`.
+
+        Raises
+        ------
+        DoorError
+            When it refuses, or the snapshot is of another.
+        """
+        del nominal, snapshot
+        raise DoorError("a controller of its kind does not go on from what another remembers")
 
     def message(self) -> str:
         """What the controller has said last, above all why it failed."""

@@ -4,10 +4,12 @@ from collections.abc import Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
+from typing import Any
 
 from pvlvrt_compliance import controllers
 from pvlvrt_compliance.controllers.description import Value
 from pvlvrt_compliance.controllers.door import Door, DoorError
+from pvlvrt_compliance.controllers.faults import RAISED, Faults
 from pvlvrt_compliance.controllers.python.door import PythonDoor
 from pvlvrt_compliance.controllers.spelling import names_module
 
@@ -22,19 +24,32 @@ DOORS: tuple[type[Door], ...] = tuple(_listed())
 """In the order of their folders."""
 
 
-def door_to(spec: str, given: Mapping[str, Value], mapping: str | None = None) -> Door:
+def door_to(
+    spec: str,
+    given: Mapping[str, Value],
+    mapping: str | None = None,
+    faults: Faults = RAISED,
+    *,
+    allow_out_of_range: bool = False,
+) -> Door:
     """Door to a controller; ``given`` are the parameters that the user has set, ``mapping`` names a mapping file.
+
+    With ``allow_out_of_range`` these may be out of the ranges that the controller states for them.
 
     Raises
     ------
     DoorError
-        When no door fits, or there is nothing behind it.
+        When no door fits, or there is nothing behind it; of faults that are kept only where nothing more can be known.
     """
     found = _by_scheme(spec) or _by_suffix(spec) or _by_module(spec)
     if found is None:
         *first, last = (door.written for door in DOORS)
         raise DoorError(f"not a kind of controller that is known; write {', '.join(first)} or {last}")
-    return found(spec, given, mapping)
+    if not (faults.kept and found.keeps_faults):
+        return found(spec, given, mapping, allow_out_of_range=allow_out_of_range)
+    with_faults: Any = found
+    made: Door = with_faults(spec, given, mapping, faults, allow_out_of_range=allow_out_of_range)
+    return made
 
 
 def _by_scheme(spec: str) -> type[Door] | None:

@@ -4,6 +4,8 @@ import json
 import math
 import reprlib
 from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import replace
+from typing import TypeGuard
 
 import numpy as np
 
@@ -26,6 +28,7 @@ def checked_parameters(
     known: Iterable[ParameterInfo],
     holds: Mapping[str, Range] | None = None,
     besides: Collection[str] = (),
+    allow_out_of_range: bool = False,
 ) -> dict[str, Value]:
     """Values of the parameters that are given, each of the type of its default and within its range.
 
@@ -42,13 +45,15 @@ def checked_parameters(
         Smallest and largest number that the type of a parameter holds, by its name; any number where there is none.
     besides : collection of str
         Names that the host takes for every controller of the kind; they are left out.
+    allow_out_of_range : bool
+        Whether a number may be out of the range that the controller states for it; never out of that of its type.
 
     Raises
     ------
     DoorError
         With everything that is not known or cannot be used, a line each.
     """
-    by_name = {info.name: info for info in known}
+    by_name = {info.name: _unbounded(info) if allow_out_of_range else info for info in known}
     found, problems = {}, []
     for name, value in given.items():
         try:
@@ -59,6 +64,21 @@ def checked_parameters(
     if problems:
         raise DoorError("\n".join(problems))
     return found
+
+
+def beyond_their_ranges(given: Mapping[str, Value], known: Iterable[ParameterInfo]) -> dict[str, str]:
+    """What is given out of the range that the controller states for it, in words by its name: ``0 H (0.1 to 2)``."""
+    numbers = ((info, code_of(given[info.name])) for info in known if info.name in given and _is_number(info.value))
+    return {
+        info.name: f"{_with_unit(number, info)} ({_range(*_stated(info))})"
+        for info, number in numbers
+        if _is_number(number) and not _is_within(number, _stated(info))
+    }
+
+
+def code_of(value: Value) -> Value:
+    """The whole number that a single character of type char is; any other value as it is."""
+    return ord(value) if isinstance(value, str) and len(value) == 1 and value.isascii() else value
 
 
 def seconds(given: Mapping[str, Value], name: str) -> float | None:
@@ -103,7 +123,7 @@ def _checked(
         found = _CONVERSIONS[kind](value)
     except _MisfitError as error:
         raise DoorError(_told(name, f"{_shown(value)} is not {error}")) from None
-    if isinstance(found, (int, float)) and not isinstance(found, bool):
+    if _is_number(found):
         _check_range(info, found, holds)
     return found
 
@@ -114,11 +134,35 @@ def _unknown(name: str, names: Collection[str]) -> str:
 
 
 def _check_range(info: ParameterInfo, found: float, holds: Range) -> None:
-    low = max(holds[0], -math.inf if info.minimum is None else info.minimum)
-    high = min(holds[1], math.inf if info.maximum is None else info.maximum)
-    if not low <= found <= high:
-        unit = f" {info.unit}" if info.unit else ""
-        raise DoorError(_told(info.name, f"{_shown(found)}{unit} is out of range; {_range(low, high)} is allowed"))
+    stated = _stated(info)
+    low, high = max(holds[0], stated[0]), min(holds[1], stated[1])
+    if not _is_within(found, (low, high)):
+        raise DoorError(_told(info.name, f"{_with_unit(found, info)} is out of range; {_range(low, high)} is allowed"))
+
+
+def _stated(info: ParameterInfo) -> Range:
+    """The range that the controller states for a parameter, without end where it states none."""
+    return (
+        -math.inf if info.minimum is None else info.minimum,
+        math.inf if info.maximum is None else info.maximum,
+    )
+
+
+def _unbounded(info: ParameterInfo) -> ParameterInfo:
+    return replace(info, minimum=None, maximum=None)
+
+
+def _is_within(number: float, allowed: Range) -> bool:
+    return allowed[0] <= number <= allowed[1]
+
+
+def _is_number(value: Value) -> TypeGuard[float | int]:
+    """Whether a value has a range: no text, and no switch, which is a whole number in Python."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _with_unit(number: float, info: ParameterInfo) -> str:
+    return f"{_shown(number)} {info.unit}".rstrip()
 
 
 def _number(value: Value) -> float:

@@ -1,9 +1,10 @@
-"""A controller that is given in Python: its class, or a function that makes it.
+"""A controller that is given in Python: its class, a function that makes it, or one that is made already.
 
-A class that another process can import by its file is run there, as one named by that file; see `spec_of`. All others
-exist in this process alone, those of a notebook's cell and of the script that is running, and are run in it.
+What is given exists in this process, and is run in it as it is. Only where tests are to be run in other processes a
+class is named by the file that these can import, if there is one; see `spec_of`.
 """
 
+import copy
 import hashlib
 import inspect
 import sys
@@ -11,26 +12,31 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from threading import Event
-from typing import Any
+from typing import Any, NamedTuple
 
-import numpy as np
-
-from pvlvrt_compliance.controllers.description import Description, Value
-from pvlvrt_compliance.controllers.door import DoorError, described
-from pvlvrt_compliance.controllers.limits import Limits
-from pvlvrt_compliance.controllers.process.worker import RunJob
+from pvlvrt_compliance.controllers import Controller
+from pvlvrt_compliance.controllers.description import ParameterInfo, Value
+from pvlvrt_compliance.controllers.door import Door
+from pvlvrt_compliance.controllers.in_process import InProcess
 from pvlvrt_compliance.controllers.python.door import PythonDoor
-from pvlvrt_compliance.controllers.run import ForeignRecord, run_through
-from pvlvrt_compliance.controllers.simulator import ForeignSimulator
+from pvlvrt_compliance.controllers.python.making import attributes_of
 from pvlvrt_compliance.errors import UsageError
-from pvlvrt_compliance.simulation.door.exchange import PROGRESSES
 from pvlvrt_compliance.simulation.door.native_call import FAILED
-from pvlvrt_compliance.simulation.parameters import Parameters
 
 Factory = Callable[..., Any]
 
+Given = Factory | Controller
+"""A class, a function that makes a controller, or one that is made already."""
 
-def spec_of(made: Factory) -> str | None:
+
+class _Digest(NamedTuple):
+    """What identifies a controller that is given in Python, and what there is to say of that."""
+
+    sha256: str
+    notes: tuple[str, ...]
+
+
+def spec_of(made: Given) -> str | None:
     """``FILE.py:CLASS`` of a class that stands in a module of its own file, outside of any package; else None.
 
     Not of the script that is running: to import it would be to run it anew.
@@ -45,72 +51,91 @@ def spec_of(made: Factory) -> str | None:
     return f"{_from_here(Path(file))}:{name}"
 
 
-def name_of(made: Factory) -> str:
-    """Name of a class or function in messages and reports."""
+def name_of(made: Given) -> str:
+    """Name of a class or function in messages and reports; of a controller that of its class."""
     name = getattr(made, "__qualname__", None) or type(made).__qualname__
     return f"{getattr(made, '__module__', None) or '__main__'}.{name}"
 
 
-class SimulatorHere(ForeignSimulator):
-    """Simulator with a controller of this process: what it does, it does here.
-
-    An exception that it raises is an error of that test. Nothing holds it otherwise: what it prints is printed, a crash
-    is one of this process, and it may take as long as it likes.
+class SimulatorHere(InProcess):
+    """Simulator with a controller that is given in Python: each of its tests has one of its own.
 
     Parameters
     ----------
-    made : class or function
-        Called for every test anew.
+    made : class, function or object
+        A class or a function is called for every test anew; of a controller that is made already a copy is taken now,
+        and each test has one of that.
     given : mapping
         Its parameters, as far as they are set.
+    allow_out_of_range : bool
+        Of no meaning here, as a class states no ranges; which is told.
 
     Raises
     ------
     UsageError
-        When it cannot be made, or makes no controller.
+        When it cannot be made or copied, makes no controller, or parameters are set of one that is made already.
     """
 
-    def __init__(self, made: Factory, given: Mapping[str, Value] | None = None) -> None:
-        if not callable(made) or (hasattr(made, "sample_time_s") and not inspect.isclass(made)):
-            raise UsageError(f"controller {made!r}: give its class, or a function that makes it; each test has its own")
-        self._made = made
-        super().__init__(name_of(made), given)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """There is no other process that could have it."""
-        raise TypeError(self.stays_here)
+    def __init__(
+        self, made: Given, given: Mapping[str, Value] | None = None, *, allow_out_of_range: bool = False
+    ) -> None:
+        self._made = _maker(made, given or {})
+        self._digest = _digest(made)
+        super().__init__(name_of(made), given, allow_out_of_range=allow_out_of_range)
 
     @property
     def stays_here(self) -> str:
         """That it is in this process alone."""
         return "the controller exists in this process alone"
 
-    def stop(self) -> None:
-        """Have the run that may be under way in another thread end with its next sample."""
-        self._stopped.set()
+    def _door(self) -> Door:
+        return _DoorHere(self._made, self.given, self._digest, self._stopped)
 
-    def _door(self) -> PythonDoor:
-        return _DoorHere(self._made, self.given, self._stopped)
 
-    def _describe(self, parameters: Parameters) -> Description:
-        del parameters  # a thread has no limits
-        try:
-            return described(self._door())
-        except DoorError as error:
-            raise UsageError(f"controller {self.spec}: {error}") from None
+class _Copies:
+    """Makes controllers by copying one, as it was at first."""
 
-    def _run(self, job: RunJob, limits: Limits) -> ForeignRecord:
-        del limits
-        progress = np.full(PROGRESSES, np.nan)
-        return run_through(self._door(), job.scenario, job.parameters, job.plan, progress, after_trip=job.after_trip)
+    def __init__(self, made: Any) -> None:
+        self.first = copy.deepcopy(made)
+
+    def __call__(self) -> Any:
+        return copy.deepcopy(self.first)
+
+
+def _maker(made: Any, given: Mapping[str, Value]) -> Factory:
+    """What makes the controller of a test.
+
+    Raises
+    ------
+    UsageError
+        When there is none.
+    """
+    is_made = hasattr(made, "sample_time_s") and not inspect.isclass(made)
+    if not is_made:
+        if not callable(made):
+            said = "give a class, a function that makes it, or a controller that is made already"
+            raise UsageError(f"controller {made!r}: {said}")
+        return made  # type: ignore[no-any-return]
+    if given:
+        said = "a controller that is made already takes no parameters; give its class, or make it with them"
+        raise UsageError(f"controller.{next(iter(given))}: {said}")
+    try:
+        return _Copies(made)
+    except Exception as error:
+        said = "it cannot be copied, and each test has its own; give its class, or a function that makes it"
+        raise UsageError(f"controller {name_of(made)}: {said} ({type(error).__name__}: {error})") from None
 
 
 class _DoorHere(PythonDoor):
     """Door for a class, or a function that makes a controller, until it is stopped."""
 
-    def __init__(self, made: Factory, given: Mapping[str, Value], stopped: Event) -> None:
-        self._class_name, self._digest, self._stopped = name_of(made), _digest(made), stopped
+    def __init__(self, made: Factory, given: Mapping[str, Value], digest: _Digest, stopped: Event) -> None:
+        first = made.first if isinstance(made, _Copies) else None
+        self._class_name, self._stopped = name_of(made if first is None else first), stopped
+        self._digest, self._notes = digest
         self._begin(made, given)
+        if first is not None:  # what it was made with is seen by its attributes alone
+            self._parameters = tuple(ParameterInfo(name, value) for name, value in attributes_of(first).items())
 
     def besides(self) -> str:
         """What this process has made of it so far is not known."""
@@ -129,16 +154,20 @@ class _DoorHere(PythonDoor):
         return advance_until_stopped
 
 
-def _digest(made: Factory) -> str:
-    """SHA-256 of its source, as far as that can be had, else of its name."""
-    functions: list[Factory] = [made]
-    if inspect.isclass(made):
-        functions += [x for x in vars(made).values() if inspect.isfunction(x)]
+def _digest(made: Any) -> _Digest:
+    """SHA-256 of its source, as far as that can be had, else of its name, which is noted then."""
+    of = made if inspect.isclass(made) or inspect.isroutine(made) or not hasattr(made, "sample_time_s") else type(made)
+    functions: list[Any] = [of]
+    if inspect.isclass(of):
+        functions += [of_class for of_class in of.__mro__[1:] if of_class is not object]
+        functions += [x for x in vars(of).values() if inspect.isfunction(x)]
     sources = []
     for function in functions:
         with suppress(OSError, TypeError):
             sources.append(inspect.getsource(function))
-    return hashlib.sha256("\n".join(sources or [name_of(made)]).encode()).hexdigest()
+    content = "\n".join(sources or [name_of(made)])
+    notes = () if sources else ("its source is not at hand: the digest is of its name alone",)
+    return _Digest(hashlib.sha256(content.encode()).hexdigest(), notes)
 
 
 def _from_here(file: Path) -> Path:

@@ -1,13 +1,14 @@
 """One run with a controller from outside, in this process: see `simulator` for one that is safe from it."""
 
 import math
-from collections.abc import Mapping
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pvlvrt_compliance.controllers.door import Door, DoorCall
+from pvlvrt_compliance.controllers.door import Door, DoorCall, DoorError
+from pvlvrt_compliance.controllers.resting import at_rest, unpacked
 from pvlvrt_compliance.controllers.sample_time import Rates, not_below, rates_of, with_rates
 from pvlvrt_compliance.errors import SimulationError
 from pvlvrt_compliance.scenario.sag import Sag
@@ -30,6 +31,7 @@ from pvlvrt_compliance.simulation.electronics import hardware_of
 from pvlvrt_compliance.simulation.loop import run
 from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.recorder import RecordingPlan, every_period
+from pvlvrt_compliance.simulation.settled_run import LoopState, lines_of, state_after, with_lines
 from pvlvrt_compliance.simulation.told import Told, told_of
 from pvlvrt_compliance.simulation.translate import (
     controller_params,
@@ -62,6 +64,8 @@ class ForeignRecord(NamedTuple):
     samples: NDArray[np.float64]
     notes: tuple[str, ...] = ()  # what the controller had to say
     tripped_at_s: float | None = None
+    state: bytes | None = None  # where the run was at its end (`resting`), if that is kept
+    stateless: str = ""  # why it is not, though it was asked for
 
 
 def settling_s_of(parameters: Parameters) -> float:
@@ -97,6 +101,8 @@ def run_through(
     progress: NDArray[np.float64],
     *,
     after_trip: bool = True,
+    since: bytes | None = None,
+    keeps: bool = False,
 ) -> ForeignRecord:
     """Open a door and run its controller through a scenario.
 
@@ -108,6 +114,10 @@ def run_through(
         Not a number at first; kept at the simulated time (s), and at what is ignored after a trip.
     after_trip : bool
         Whether the controller is called after a trip, too.
+    since : bytes, optional
+        Where an earlier run was at its end, to go on from there; the plan begins no earlier.
+    keeps : bool
+        Whether it is kept where this one is at its end, which has to be a sample of the controller's.
 
     Raises
     ------
@@ -126,23 +136,41 @@ def run_through(
     start = steady_state(plant, tables.grid, controller, scenario, first * period_s)
     calls = (int(plan.first[-1]) - first) // timing.ratio + 1
     nominal = nominal_of(parameters, scenario)
-    opened = door.open(nominal)
+    state = None if since is None else unpacked(since)
+    opened = door.open(nominal) if state is None else door.resume(nominal, state.controller)
+    known = len(opened.notes)  # of one that goes on: said before, too
     try:
         table = door_table(opened, told_of(scenario, parameters, tables), timing, progress, after_trip=after_trip)
         samples = np.empty((sum(plan.rows), len(RECORDED) + len(opened.recorded)))
         hardware = hardware_of(parameters, start, calls)
-        ended = run(start.plant, None, start.m, first, plant, tables, None, hardware, table, plan, samples)
+        at = LoopState(start.plant, None, start.m, first, 0, lines_of(hardware))
+        if state is not None:
+            table.commands[:] = state.commands
+            at = state.loop
+        of_run = (plant, tables, None, with_lines(hardware, at.lines), table, plan, samples, at.k)
+        ended = run(at.plant, None, at.m, at.period, *of_run)
         if ended.status != outcome.COMPLETED:
             raise SimulationError(_explained(ended.status, ended.period * period_s, table, door.message()))
         ignored = _ignored(table, door.message())
+        notes = opened.notes if state is None else [*dict.fromkeys((*state.notes, *opened.notes[known:]))]
+        kept = _kept(door, table, state_after(ended, at.lines), notes) if keeps else {}
     finally:
         door.close()
     return ForeignRecord(
         (*RECORDED, *opened.recorded),
         samples,
-        (*opened.notes, *ignored),
+        (*notes, *ignored),
         outcome.tripped_at_s(ended.plant, int(plan.first[-1]) * period_s),
+        **kept,
     )
+
+
+def _kept(door: Door, table: DoorTable, loop: LoopState | None, notes: Sequence[str]) -> Any:
+    """Where a run is at its end, or why that cannot be kept, as fields of its record."""
+    try:
+        return {"state": at_rest(door, table, loop, notes).packed()}
+    except DoorError as error:
+        return {"stateless": str(error)}
 
 
 def door_table(

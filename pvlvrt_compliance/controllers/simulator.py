@@ -5,30 +5,31 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pvlvrt_compliance.controllers.description import Description, Value
-from pvlvrt_compliance.controllers.limits import (
-    Limits,
-    allowing_more,
-    limits_of_opening,
-    limits_of_run,
-    with_limit_named,
-)
+from pvlvrt_compliance.controllers.endings import end_in_words, why_not_described, with_said
+from pvlvrt_compliance.controllers.given_parameters import beyond_their_ranges
+from pvlvrt_compliance.controllers.limits import Limits, limits_of_opening, limits_of_run
 from pvlvrt_compliance.controllers.mapping.commands import missing_commands, missing_words
 from pvlvrt_compliance.controllers.mapping.file import load_mapping
+from pvlvrt_compliance.controllers.mapping.telling import reasons, told_of
 from pvlvrt_compliance.controllers.process.isolation import Ended, do_apart, stop_apart
 from pvlvrt_compliance.controllers.process.worker import DescribeJob, RunJob
 from pvlvrt_compliance.controllers.program.link import TCP
-from pvlvrt_compliance.controllers.run import IGNORED_WORDS, ForeignRecord, settling_s_of, when
+from pvlvrt_compliance.controllers.run import IGNORED_WORDS, ForeignRecord, settling_s_of, settling_samples
 from pvlvrt_compliance.controllers.sample_time import rates_of
 from pvlvrt_compliance.errors import SimulationError, UsageError
 from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.common_start import CommonStart, common_start
 from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.recorder import RecordingPlan
 from pvlvrt_compliance.simulation.simulate import record_of, recorded
 from pvlvrt_compliance.simulation.surroundings import playback_table
 from pvlvrt_compliance.waveforms import Waveforms
+
+if TYPE_CHECKING:
+    from pvlvrt_compliance.controllers.settling import SettlesOnce
 
 
 class ForeignSimulator:
@@ -48,6 +49,8 @@ class ForeignSimulator:
         Folder that relative names start from; by default the working folder.
     parameters : Parameters, optional
         Of the runs to come; the limits among them hold while it is opened.
+    allow_out_of_range : bool
+        Whether a parameter may be out of the range that the controller states for it; its provenance names each.
 
     Raises
     ------
@@ -63,6 +66,7 @@ class ForeignSimulator:
         description: Description | None = None,
         beside: str | None = None,
         parameters: Parameters | None = None,
+        allow_out_of_range: bool = False,
     ) -> None:
         self.spec = spec
         self._beside = beside
@@ -70,22 +74,36 @@ class ForeignSimulator:
         self.notes: list[str] = []  # what the controller has said in its runs so far, each once
         self.last_notes: list[str] = []  # the same of the last run alone
         self._mapping = mapping
+        self._allow_out_of_range = allow_out_of_range
         self._stopped = Event()
         self.description = description or self._describe(parameters or Parameters())
         if loose := self.loose_inputs():
             self.notes.append(f"tied to nothing and left as the controller has them: inputs {', '.join(loose)}")
+        self.note(told_of(self.description.inputs, self.description.outputs))
+        if allow_out_of_range:
+            self.notes.append(_beyond_words(self.out_of_range()))
 
     def __reduce__(self) -> tuple[Any, ...]:
         """For another process, where it is not described anew."""
-        return ForeignSimulator, (self.spec, self.given, self._mapping, self.description, self._beside)
+        given = (self.spec, self.given, self._mapping, self.description, self._beside)
+        return ForeignSimulator, (*given, None, self._allow_out_of_range)
+
+    is_in_process = False
+    """Whether the controller is at work in this process, in the thread that asks for a record."""
 
     @property
     def stays_here(self) -> str:
         """Why it cannot be run in several processes at once; empty where it can."""
         return "what listens at an address runs one test at a time" if self.spec.startswith(TCP) else ""
 
-    def __call__(self, scenario: Scenario, parameters: Parameters) -> Waveforms:
-        """Run the controller through a scenario.
+    def start_of(self, scenario: Scenario, parameters: Parameters) -> CommonStart | None:
+        """Where a run of it parts from others."""
+        rates = rates_of(self.description.sample_time_s, parameters)
+        settling = settling_samples(parameters, rates) * rates.periods
+        return common_start(scenario, parameters, rates.sample_time_s / rates.periods, settling, rates.periods)
+
+    def __call__(self, scenario: Scenario, parameters: Parameters, settles: "SettlesOnce | None" = None) -> Waveforms:
+        """Run the controller through a scenario, from a settled state where there is one to go on from.
 
         Raises
         ------
@@ -103,14 +121,19 @@ class ForeignSimulator:
 
         def make(plan: RecordingPlan) -> Waveforms:
             in_periods = RecordingPlan(first=rates.thinning * plan.first, step=rates.thinning * plan.step)
-            record = self._run(job_of(in_periods), limits)
+            job = job_of(in_periods)
+            if settles is None:
+                record = self._run(job, limits)
+            else:
+                start = self.start_of(scenario, parameters)
+                record = settles.record(job, start, lambda job: self._run(job, limits))
             self.last_notes += [note for note in record.notes if note not in self.last_notes]
             self.note(record.notes)
             return record_of(record.samples, plan, row_s, record.channels, tripped_at_s=record.tripped_at_s)
 
         def job_of(plan: RecordingPlan) -> RunJob:
             return RunJob(
-                *(self.spec, self.given, self._mapping, self._beside or str(Path.cwd())),
+                *self._what_and_where(),
                 scenario=scenario,
                 parameters=parameters,
                 plan=plan,
@@ -135,7 +158,7 @@ class ForeignSimulator:
         if ended.answer is not None or ended.tripped_s is None or self._stopped.is_set():
             return _record_of(ended, limits)
         record = _record_of(do_apart(replace(job, after_trip=False), limits, rows), limits)
-        return record._replace(notes=(*record.notes, f"{IGNORED_WORDS}: {_end_in_words(ended)}"))
+        return record._replace(notes=(*record.notes, f"{IGNORED_WORDS}: {end_in_words(ended)}"))
 
     def stop(self) -> None:
         """End the run that may be under way in another thread: nobody waits for it any more."""
@@ -174,7 +197,7 @@ class ForeignSimulator:
             With what is missing, and what is free.
         """
         if missing := missing_commands(self.description.outputs):
-            raise UsageError(f"--controller {self.spec}: {missing_words(missing, self.loose_outputs())}")
+            raise UsageError(f"--controller {self.spec}: {missing_words(missing, reasons(self.description.outputs))}")
 
     def mapping(self) -> str | None:
         """The mapping file, if there is one."""
@@ -183,6 +206,10 @@ class ForeignSimulator:
     def parameter_values(self) -> dict[str, Value]:
         """Its parameters by name: as they are given, else as the controller has them."""
         return {p.name: self.given.get(p.name, p.value) for p in self.description.parameters}
+
+    def out_of_range(self) -> dict[str, str]:
+        """Parameters that are given out of the range that the controller states for them, in words by their names."""
+        return beyond_their_ranges(self.given, self.description.parameters)
 
     def provenance(self, parameters: Parameters) -> dict[str, Any]:
         """What identifies the controller and how it was run."""
@@ -194,6 +221,7 @@ class ForeignSimulator:
             "controller_name": self.description.name,
             "controller_digest": self.description.digest,
             "controller_parameters": self.parameter_values(),
+            **({"controller_out_of_range": beyond} if (beyond := self.out_of_range()) else {}),
             "controller_notes": [*self.description.notes, *self.notes],
             **(_mapping_provenance(mapping) if mapping else {}),
             "controller_sample_time_s": self.description.sample_time_s,
@@ -202,14 +230,24 @@ class ForeignSimulator:
             "computation_delay_samples": parameters.controller.computation_delay_samples,
         }
 
+    def _what_and_where(self) -> tuple[str, Mapping[str, Value], str | None, str, bool]:
+        """What a job for the process of the controller begins with."""
+        return self.spec, self.given, self._mapping, self._beside or str(Path.cwd()), self._allow_out_of_range
+
     def _describe(self, parameters: Parameters) -> Description:
-        job = DescribeJob(self.spec, self.given, self._mapping, self._beside or str(Path.cwd()))
+        job = DescribeJob(*self._what_and_where())
         limits = limits_of_opening(parameters.simulation)
         ended = do_apart(job, limits)
         if ended.answer is not None and ended.answer.description is not None:
             return ended.answer.description
-        why = f"{ended.reason}{_advice(ended)}" if ended.answer is None else str(ended.answer.head.error)
-        raise UsageError(f"--controller {self.spec}: {_with_said(why, ended, limits)}")
+        raise UsageError(f"--controller {self.spec}: {why_not_described(ended, limits)}")
+
+
+def _beyond_words(found: Mapping[str, str]) -> str:
+    if not found:
+        return "every parameter is in the range that it states: none had to be allowed out of it"
+    words = ", ".join(f"{name} = {told}" for name, told in found.items())
+    return f"out of the range that it states, as was allowed: {words}"
 
 
 def _mapping_provenance(mapping: str) -> dict[str, str]:
@@ -226,23 +264,9 @@ def _record_of(ended: Ended, limits: Limits) -> ForeignRecord:
         When there is none: its process has given no answer, or an error.
     """
     if ended.answer is None:
-        raise SimulationError(_with_said(_end_in_words(ended), ended, limits))
+        raise SimulationError(with_said(end_in_words(ended), ended, limits))
     head, samples = ended.answer.head, ended.answer.samples
     if samples is None or head.channels is None:
-        raise SimulationError(_with_said(str(head.error), ended, limits))
-    return ForeignRecord(head.channels, samples, head.notes, head.tripped_at_s)
-
-
-def _end_in_words(ended: Ended) -> str:
-    """Why a process gave no answer, and when."""
-    at = "while it was opened" if ended.progress_s is None else f"at {when(ended.progress_s)}"
-    return f"{ended.reason} {at}{_advice(ended)}"
-
-
-def _advice(ended: Ended) -> str:
-    return allowing_more(ended.limit) if ended.limit else ""
-
-
-def _with_said(text: str, ended: Ended, limits: Limits) -> str:
-    """What went wrong, with what the controller had printed, and the limit that either speaks of."""
-    return with_limit_named(f"{text}\nit had printed: {ended.said}" if ended.said else text, limits)
+        raise SimulationError(with_said(str(head.error), ended, limits))
+    state, stateless = ended.answer.state, head.stateless
+    return ForeignRecord(head.channels, samples, head.notes, head.tripped_at_s, state, stateless)

@@ -7,7 +7,15 @@ from typing import Any, NamedTuple
 
 from pvlvrt_compliance.data.positions import Location
 from pvlvrt_compliance.data.reader import Kind, Source
-from pvlvrt_compliance.data.search_path import SUFFIX, find_profile, has_suffix, is_path, known_profiles, origin_of
+from pvlvrt_compliance.data.search_path import (
+    SUFFIX,
+    VARIABLE,
+    find_profile,
+    has_suffix,
+    is_path,
+    known_profiles,
+    origin_of,
+)
 from pvlvrt_compliance.data.syntax import Table
 from pvlvrt_compliance.errors import ProfileError, did_you_mean
 
@@ -19,6 +27,12 @@ MOST_FILES = 64
 
 OWN = frozenset({"edition", "jurisdiction", "applies_to", "address", "read_on"})
 """What a file says of its own text alone: an including one is of another, and says it again or leaves it open."""
+
+
+_OUTSIDE = (
+    "is outside of the folder of the file that includes it; put it there, or name its folder in"
+    f" ${VARIABLE} and include it by its name"
+)
 
 
 class _Joined(NamedTuple):
@@ -137,14 +151,17 @@ def _includes_of(source: Source) -> list[str]:
 
 
 def _included(name: str, including: Source, index: int) -> Path:
-    """File of an include: a bare name beside the including file or known, a path relative to the including file."""
+    """File of an include: a bare name beside the including file or known, a path in or below that file's folder."""
     if is_path(name) and not has_suffix(
         name
     ):  # whatever else others name is not opened: a problem shows keys of a file
         allowed = f"must be the name of a profile, or the path of one, which ends in {SUFFIX}"
         raise including.refusal((("include", index), f"{name!r:.60} {allowed}"))
-    beside = including.path.parent / (name if is_path(name) else f"{name}{SUFFIX}")
+    folder = including.path.parent
+    beside = folder / (name if is_path(name) else f"{name}{SUFFIX}")
     try:
+        if not _lies_in(beside, folder):
+            raise including.refusal((("include", index), f"{name!r:.60} {_OUTSIDE}"))
         found = beside if beside.is_file() else None if is_path(name) else find_profile(name)
     except (OSError, ValueError):
         found = None
@@ -152,6 +169,12 @@ def _included(name: str, including: Source, index: int) -> Path:
         hint = did_you_mean(name, known_profiles())
         raise including.refusal((("include", index), f"there is no profile {name!r}{hint}"))
     return found
+
+
+def _lies_in(file: Path, folder: Path) -> bool:
+    """Whether a file lies in a folder or below it by its path and, a link's target, by its true place."""
+    stays = file.is_relative_to(folder) and ".." not in file.relative_to(folder).parts
+    return stays and (not file.is_file() or file.resolve().is_relative_to(folder.resolve()))
 
 
 def _without_dropped(merged: Merged, source: Source, version: int) -> tuple[Merged, Merged]:

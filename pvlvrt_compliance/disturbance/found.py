@@ -22,6 +22,7 @@ from pvlvrt_compliance.errors import MeasurementError
 from pvlvrt_compliance.measure.events import EventThresholds, VoltageEvent, detect_events
 from pvlvrt_compliance.measure.fourier import ComplexSamples
 from pvlvrt_compliance.measure.sequences import sequence_phasors
+from pvlvrt_compliance.measure.silence import SILENT
 from pvlvrt_compliance.measure.tracking import tracked_frequency
 from pvlvrt_compliance.space_vectors import phases
 from pvlvrt_compliance.units import Nominal
@@ -66,6 +67,7 @@ class _Seen(NamedTuple):
         return float(x[before[-1] if len(before) else known.argmax()])
 
 
+@SILENT
 def disturbance_found(waveforms: Waveforms, nominal: Nominal, thresholds: Thresholds) -> Disturbance:
     """Find what the grid did from the voltages of a record, without the inverter's current where it has them.
 

@@ -1,7 +1,7 @@
 """Extremes, means and response times of each stretch between steps, as a test bench tells them by its cursors."""
 
 import math
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +20,8 @@ from pvlvrt_compliance.waveforms.container import Samples
 
 _SAME_INSTANT_S = 1e-9
 _PERCENT = 100
+
+_Values = dict[str, float | None]
 
 
 class _Quantity(NamedTuple):
@@ -99,28 +101,30 @@ def _before(evidence: Evidence, quantities: list[_Quantity]) -> CursorStretch | 
     window = evidence.measurements.before
     if window is None:
         return None
-    cursors = tuple(_extremes(evidence, quantities, Span(window.start_s, window.end_s)).values())
+    cursors = _cursors(_extremes(evidence, quantities, Span(window.start_s, window.end_s)))
     return CursorStretch(begin_s=window.start_s, end_s=window.end_s, is_before=True, cursors=cursors)
+
+
+def _cursors(found: dict[str, _Values]) -> tuple[Cursor, ...]:
+    return tuple(Cursor(quantity=name, **values) for name, values in found.items())
 
 
 def _of_stretch(evidence: Evidence, stretch: Stretch, quantities: list[_Quantity], cycle_s: float) -> CursorStretch:
     end_s = surely_over_s(evidence, stretch.end_s)
     before_s = surely_over_s(evidence, stretch.begin_s)
     final = None if stretch.ramps else last_window(stretch.begin_s, end_s, evidence.frequency_hz, evidence.rules)
-    cursors = _extremes(evidence, quantities, Span(stretch.begin_s + settling_s(evidence), end_s))
+    found = _extremes(evidence, quantities, Span(stretch.begin_s + settling_s(evidence), end_s))
     if final is not None:
         levels = [_means(evidence, quantities, span) for span in (Span(before_s - cycle_s, before_s), final)]
-        for number, quantity in enumerate(quantities):
-            if quantity.name in cursors:
-                ends = (levels[0][number], levels[1][number])
-                timed = _timed(evidence, quantity, Span(stretch.begin_s, end_s), ends)
-                cursors[quantity.name] = cursors[quantity.name].model_copy(update=timed)
+        for quantity, *ends in zip(quantities, *levels, strict=True):
+            if quantity.name in found:
+                found[quantity.name] |= _timed(evidence, quantity, Span(stretch.begin_s, end_s), ends)
     return CursorStretch(
         begin_s=stretch.begin_s,
         end_s=stretch.end_s,
         in_words=stretch.in_words,
         band_percent=_PERCENT * evidence.thresholds.response_band.value,
-        cursors=tuple(cursors.values()),
+        cursors=_cursors(found),
     )
 
 
@@ -129,17 +133,17 @@ def _inside(evidence: Evidence, span: Span) -> slice:
     return evidence.samples_before(span.start_s, span.end_s - _SAME_INSTANT_S)
 
 
-def _extremes(evidence: Evidence, quantities: list[_Quantity], span: Span) -> dict[str, Cursor]:
-    """Cursors by quantity, of those that are finite in a span that holds a sample."""
+def _extremes(evidence: Evidence, quantities: list[_Quantity], span: Span) -> dict[str, _Values]:
+    """Values of cursors by quantity, of those that are finite in a span that holds a sample."""
     inside = _inside(evidence, span)
     if inside.start == inside.stop or not quantities:
         return {}
     means = _means(evidence, quantities, span)
     ends = [(float(of.series[inside].min()), float(of.series[inside].max())) for of in quantities]
     return {
-        of.name: Cursor(quantity=of.name, minimum=minimum, maximum=maximum, mean=mean)
+        of.name: {"minimum": minimum, "maximum": maximum, "mean": mean}
         for of, (minimum, maximum), mean in zip(quantities, ends, means, strict=True)
-        if math.isfinite(minimum) and math.isfinite(maximum)  # what is not a number is both
+        if math.isfinite(minimum) and math.isfinite(maximum) and math.isfinite(mean)  # their sum may be beyond numbers
     }
 
 
@@ -152,12 +156,12 @@ def _means(evidence: Evidence, quantities: list[_Quantity], span: Span) -> list[
         return [mean_over_time(of.series[inside], evidence.step_s[inside]) for of in quantities]
 
 
-def _timed(evidence: Evidence, quantity: _Quantity, span: Span, levels: tuple[float, float]) -> dict[str, float | None]:
+def _timed(evidence: Evidence, quantity: _Quantity, span: Span, levels: Sequence[float]) -> _Values:
     """Levels before and after a step, and the times between them where they can be told."""
     initial, final = levels
     if not (math.isfinite(initial) and math.isfinite(final)):
         return {}
-    found: dict[str, float | None] = {"initial": initial, "final": final}
+    found: _Values = {"initial": initial, "final": final}
     inside = _inside(evidence, span)
     x = quantity.series[inside]
     # A change of just the least is timed, whichever way its means are rounded.
@@ -172,6 +176,6 @@ def _timed(evidence: Evidence, quantity: _Quantity, span: Span, levels: tuple[fl
             "rise_s": response.rise_s,
             "response_s": response.response_s,
             "settling_s": response.settling_s,
-            "overshoot_percent": _PERCENT * response.overshoot,
+            "overshoot_percent": percent if math.isfinite(percent := _PERCENT * response.overshoot) else None,
         }
     return found

@@ -24,6 +24,12 @@ def provenance_groups(provenance: Mapping[str, Any], texts: Texts) -> list[Group
     return [group for group in (Group("run", plain), *nested) if group.entries]
 
 
+def out_of_range_in_words(provenance: Mapping[str, Any]) -> str:
+    """Parameters of the controller that were allowed out of the range that it states; empty of none."""
+    found = provenance.get("controller_out_of_range")
+    return ", ".join(f"{name} = {said}" for name, said in found.items()) if isinstance(found, Mapping) else ""
+
+
 def _flatten(values: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
     for name, value in values.items():
         if isinstance(value, Mapping):

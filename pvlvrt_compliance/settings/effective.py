@@ -104,7 +104,7 @@ class Effective:
         """Words that make the run again without file and environment: those typed, where neither holds."""
         if self._is_of_results:
             return (typed[0], "--isolated", *self._options())
-        return tuple(_without(typed, {setting.option for setting in self.settings.values() if setting.is_how}))
+        return tuple(_without(typed, [setting for setting in self.settings.values() if setting.is_how]))
 
     def _options(self) -> Iterator[str]:
         for name, setting in self.settings.items():
@@ -194,15 +194,19 @@ def effective(
     )
 
 
-def _without(typed: Sequence[str], options: Collection[str]) -> Iterator[str]:
-    """Words without some options and their values."""
+def _without(typed: Sequence[str], hows: Collection[Setting]) -> Iterator[str]:
+    """Words without some options and their values; a flag has none, and a form that takes it back."""
+    flags = {setting.option for setting in hows if setting.kind is bool}
+    flags |= {f"--no-{option.removeprefix('--')}" for option in flags}
+    with_value = {setting.option for setting in hows if setting.kind is not bool}
     words = iter(typed)
     for word in words:
         name, equals, _ = word.partition("=")
-        if name not in options:
+        if name in with_value:
+            if not equals:
+                next(words, None)
+        elif word not in flags:
             yield word
-        elif not equals:
-            next(words, None)
 
 
 def _typed(name: str, given: Any, further: Collection[str]) -> Value:

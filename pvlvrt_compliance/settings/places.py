@@ -8,6 +8,7 @@ from typing import Any
 from pvlvrt_compliance.controllers.bundled import BUNDLED
 from pvlvrt_compliance.controllers.spelling import names_module
 from pvlvrt_compliance.data.search_path import is_path
+from pvlvrt_compliance.ordinary_file import is_there
 from pvlvrt_compliance.settings.setting import Setting
 
 _SCHEME = re.compile(r"[A-Za-z]{2,}(?=://)")
@@ -55,7 +56,7 @@ def _controller(spec: str, folder: Path) -> str:
 
 
 def _word(word: str, folder: Path) -> str:
-    return _from_here(word, folder) if (folder / word).is_file() else word
+    return _from_here(word, folder) if is_there(folder / word) else word
 
 
 def _from_here(path: str, folder: Path) -> str:

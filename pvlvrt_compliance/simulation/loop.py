@@ -22,7 +22,7 @@ from pvlvrt_compliance.simulation.door.controller import (
 )
 from pvlvrt_compliance.simulation.door.switches import all_off, switched_by, switches_of
 from pvlvrt_compliance.simulation.door.table import DoorTable
-from pvlvrt_compliance.simulation.outcome import COMPLETED, NOT_FINITE, Outcome
+from pvlvrt_compliance.simulation.outcome import COMPLETED, NOT_FINITE, Onward, Outcome
 from pvlvrt_compliance.simulation.recorder import RecordingPlan, next_row
 from pvlvrt_compliance.simulation.sample import sampled
 
@@ -39,6 +39,12 @@ def is_finite(x: PlantState, s: ControllerSignals) -> bool:
     return math.isfinite(plant + s.m.real + s.m.imag + s.w + s.P_ref + s.v_ref)
 
 
+@kernel
+def ended(status: int, period: int, plant: PlantState, x: ControllerState | None, m: complex, k: int) -> Outcome:
+    """How a run ends, with what another needs to go on."""
+    return Outcome(status=status, period=period, plant=plant, onward=Onward(controller=x, m=m, k=k))
+
+
 @cached_kernel
 def run(  # noqa: PLR0912 - one for all that may be none; those cost nothing, and to hand a door on does
     plant: PlantState,
@@ -52,6 +58,7 @@ def run(  # noqa: PLR0912 - one for all that may be none; those cost nothing, an
     door: DoorTable | None,
     plan: RecordingPlan,
     samples: NDArray[np.float64],
+    k: int = 0,
 ) -> Outcome:
     """Simulate from control period ``first`` (negative: unrecorded settling) to the end of the plan.
 
@@ -78,15 +85,20 @@ def run(  # noqa: PLR0912 - one for all that may be none; those cost nothing, an
     samples : array, shape (n, len(columns.CHANNELS))
         Filled with the record, a row for every period of the plan; with a door of shape (n, len(columns.RECORDED) +
         further signals).
+    k : int
+        Samples that the controller has taken before: of a run that goes on where another has ended, with plant,
+        controller, ``m`` and hardware as they were then, no switch on, and ``first`` a period in which it samples.
     """
     T_reg = plant_params.ratio * plant_params.T_S
     if door is not None:
-        status, period = synchronised_controller(plant, m, first, plant_params, tables, door)
+        status, period = synchronised_controller(plant, m, first, plant_params, tables, door, k == 0)
         if status != COMPLETED:
-            return Outcome(status=status, period=period, plant=plant)
+            return ended(status, period, plant, controller, m, k)
     relay, signals, switches, sampling = plant.relay, commanding(m), all_off(), True
-    k_grid, k = 0, 0
-    row, stretch, due = 0, 0, plan.first[0]
+    # A literal would have whatever it is handed to compiled twice: for it, and for the number that it becomes.
+    zero: int = np.int64(0)  # type: ignore[assignment]
+    k_grid = zero
+    row, stretch, due = zero, zero, plan.first[0]
     for n in range(first, plan.first[-1]):
         t = n * T_reg
         source = source_at(t, k_grid, tables.grid)
@@ -110,9 +122,9 @@ def run(  # noqa: PLR0912 - one for all that may be none; those cost nothing, an
                     signals = commanding(commanded(door, sample.seen.v_dc))
                     switches = switches_of(door)
                 elif status != IGNORED:
-                    return Outcome(status=status, period=n, plant=plant)
+                    return ended(status, n, plant, controller, signals.m, k)
         if not is_finite(plant, signals):
-            return Outcome(status=NOT_FINITE, period=n, plant=plant)
+            return ended(NOT_FINITE, n, plant, controller, signals.m, k)
         if n == due:
             record_plant(samples[row], plant, y, now.G)
             if controller_params is not None:
@@ -127,4 +139,4 @@ def run(  # noqa: PLR0912 - one for all that may be none; those cost nothing, an
         plant = advance(plant, m, source, t, now, tables)
         if door is not None and n < door.timing.armed:
             plant = untripped(plant, relay)
-    return Outcome(status=COMPLETED, period=plan.first[-1], plant=plant)
+    return ended(COMPLETED, plan.first[-1], plant, controller, signals.m, k)

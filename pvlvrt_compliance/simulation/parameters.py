@@ -30,6 +30,9 @@ LONGEST = 2000
 SHORTEST_PERIOD_S, LONGEST_PERIOD_S = 1e-6, 0.1
 """Range of the control period, and of a controller's sample time: chosen."""
 
+OUT_OF_RANGE = "is out of range"
+"""In the message on a number that is."""
+
 _BEYOND = re.compile(r"must be (?:greater|less) than(?: or equal to)? \S+, not (.+)")
 """How a number out of its range is told of one side alone."""
 
@@ -240,4 +243,4 @@ def _in_range(location: Location, text: str) -> str:
         return text
     ranges = ranges_of(_field(".".join(map(str, location[:2]))))
     low, high = ranges[location[-1] if len(ranges) > 1 and isinstance(location[-1], int) else 0]
-    return f"{beyond[1]} is out of range; {low:g} to {high:g} is allowed"
+    return f"{beyond[1]} {OUT_OF_RANGE}; {low:g} to {high:g} is allowed"

@@ -14,11 +14,21 @@ from pvlvrt_compliance.plant.plant import PlantTables
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import busy_stretches
 from pvlvrt_compliance.simulation.columns import CHANNELS
+from pvlvrt_compliance.simulation.common_start import CommonStarts
 from pvlvrt_compliance.simulation.electronics import hardware_of
 from pvlvrt_compliance.simulation.loop import run
-from pvlvrt_compliance.simulation.outcome import COMPLETED, tripped_at_s
+from pvlvrt_compliance.simulation.outcome import COMPLETED, Outcome, tripped_at_s
 from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.recorder import RecordingPlan, every_period, plan_of, with_settling
+from pvlvrt_compliance.simulation.settled_run import (
+    LoopState,
+    SettledRun,
+    lines_of,
+    settling_periods,
+    start_of,
+    through,
+    with_lines,
+)
 from pvlvrt_compliance.simulation.thinning import Busy, too_much
 from pvlvrt_compliance.simulation.translate import (
     control_period_s,
@@ -35,7 +45,12 @@ _ROWS_AT_ONCE = 512
 
 
 def simulate(  # type: ignore[no-untyped-def]
-    scenario: Scenario, parameters: Parameters, run=run, *, thin: bool = True
+    scenario: Scenario,
+    parameters: Parameters,
+    run=run,
+    *,
+    thin: bool = True,
+    starts: CommonStarts[SettledRun] | None = None,
 ) -> Waveforms:
     """Run plant and controller through a scenario, from the steady state of normal operation.
 
@@ -52,6 +67,8 @@ def simulate(  # type: ignore[no-untyped-def]
         Loop over time with the signature of `loop.run`; the bundled controller's by default.
     thin : bool
         Whether long records are thinned out.
+    starts : CommonStarts, optional
+        Settled states that several runs go on from; the record is the same to the bit.
 
     Raises
     ------
@@ -61,7 +78,7 @@ def simulate(  # type: ignore[no-untyped-def]
     tables = plant_tables(parameters, scenario)
 
     def make(plan: RecordingPlan) -> Waveforms:
-        return _run(scenario, parameters, tables, plan, run)
+        return _run(scenario, parameters, tables, plan, run, starts)
 
     T_reg, simulation = control_period_s(parameters), parameters.simulation
     settling = math.floor(simulation.settling_s / T_reg) if simulation.record_settling else 0
@@ -121,19 +138,31 @@ def _opened_while_thin_s(waveforms: Waveforms) -> float | None:
 
 
 def _run(  # type: ignore[no-untyped-def]
-    scenario: Scenario, parameters: Parameters, tables: PlantTables, plan: RecordingPlan, run
+    scenario: Scenario,
+    parameters: Parameters,
+    tables: PlantTables,
+    plan: RecordingPlan,
+    run,
+    starts: CommonStarts[SettledRun] | None,
 ) -> Waveforms:
     plant = plant_params(parameters, scenario)
     controller = controller_params(parameters, scenario)
     T_reg = control_period_s(parameters)
-    settling = math.ceil(parameters.simulation.settling_s / T_reg)
-    samples = np.empty((len(CHANNELS), sum(plan.rows))).T  # a channel lies in one piece, as a record has it
+    settling = settling_periods(parameters)
     start = steady_state(plant, tables.grid, controller, scenario, -settling * T_reg)
     hardware = hardware_of(parameters, start, settling + int(plan.first[-1]))
     state = start.controller
     if parameters.controller.precision == "single":
         state, controller = in_single_precision(state, controller)
-    outcome = run(start.plant, state, start.m, -settling, plant, tables, controller, hardware, None, plan, samples)
+
+    def go_on(x: LoopState, plan: RecordingPlan) -> tuple[Outcome, NDArray[np.float64]]:
+        samples = np.empty((len(CHANNELS), sum(plan.rows))).T  # a channel lies in one piece, as a record has it
+        of_run = (plant, tables, controller, with_lines(hardware, x.lines), None, plan, samples, x.k)
+        return run(x.plant, x.controller, x.m, x.period, *of_run), samples
+
+    first = LoopState(start.plant, state, start.m, -settling, 0, lines_of(hardware))
+    common = start_of(scenario, parameters) if starts is not None else None
+    outcome, samples = through(first, plan, go_on, starts, common)
     if outcome.status != COMPLETED:
         raise SimulationError(f"a number stopped being finite at {max(outcome.period, 0) * T_reg:.4f} s")
     return record_of(samples, plan, T_reg, tripped_at_s=tripped_at_s(outcome.plant, int(plan.first[-1]) * T_reg))

@@ -19,7 +19,7 @@ LOCAL = "local"
 
 
 def jobs_of(asked: "Asked", spell: Callable[[str], str]) -> str | int | None:
-    """How many tests are run at once, as of `Asked`.
+    """How many tests are run at once, as of `Asked`; one, where the controller is debugged.
 
     Raises
     ------
@@ -28,14 +28,14 @@ def jobs_of(asked: "Asked", spell: Callable[[str], str]) -> str | int | None:
     """
     given = asked.jobs
     if given is None or given == AUTO:
-        return given
+        return 1 if asked.debug else given
     try:
         count = int(given)
     except ValueError:
         count = 0
     if not 1 <= count <= MOST_JOBS:
         raise UsageError(f"{spell('jobs')} {given}: give how many tests are run at once, 1 to {MOST_JOBS}, or {AUTO}")
-    return count
+    return 1 if asked.debug else count
 
 
 def cluster_of(asked: "Asked", spell: Callable[[str], str]) -> str | None:
@@ -51,6 +51,9 @@ def cluster_of(asked: "Asked", spell: Callable[[str], str]) -> str | None:
         raise UsageError(f"{spell('jobs')} {own}")
     if asked.cluster not in (None, LOCAL) and asked.reuse is not None:
         raise UsageError(f"{spell('reuse')}: the folder is of this machine; it does not go with {spell('cluster')}")
+    if asked.cluster is not None and asked.debug:
+        own = "runs the controller in the process of the command; it does not go with"
+        raise UsageError(f"{spell('debug')} {own} {spell('cluster')}")
     if asked.cluster is not None and not asked.cluster.strip():
         raise UsageError(f"{spell('cluster')}: give the address of a scheduler (tcp://HOST:8786), or {LOCAL}")
     return asked.cluster

@@ -1,5 +1,6 @@
 """What is compared: results that are there already, or controllers that are run for it, and where the files go."""
 
+import stat
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
@@ -8,6 +9,7 @@ from typing import Any, NamedTuple
 
 from pvlvrt_compliance.controllers.bundled import BUNDLED
 from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.ordinary_file import mode_of
 from pvlvrt_compliance.results import Results
 from pvlvrt_compliance.results.files import COMPARISON_FILES, INTERRUPTED, JUNIT, NEW, OLD, RESULTS
 from pvlvrt_compliance.results.reading import read_results
@@ -61,7 +63,7 @@ def results_file(name: str) -> Path | None:
     path = Path(name)
     if path.suffix.lower() == ".json":
         return path
-    if not path.is_dir():
+    if not stat.S_ISDIR(mode_of(path)):
         return None
     if (path / RESULTS).is_file():
         return path / RESULTS

@@ -12,7 +12,7 @@ from pvlvrt_compliance.profile.loading import load_profile
 from pvlvrt_compliance.profile.profile import Profile
 from pvlvrt_compliance.scenario.files import load_events
 from pvlvrt_compliance.scenario.quantities import in_units_of
-from pvlvrt_compliance.simulation.parameters import Parameters, own_parameters, parameters_from
+from pvlvrt_compliance.simulation.parameters import OUT_OF_RANGE, Parameters, own_parameters, parameters_from
 from pvlvrt_compliance.study.own_sag import sag_tests
 from pvlvrt_compliance.study.selection import Assignment
 
@@ -87,6 +87,8 @@ def parameters_of(asked: "Asked", spell: Spell) -> tuple[Parameters, dict[str, f
         return parameters, own
     except UsageError as error:
         text = str(error)
+        if asked.allow_out_of_range and OUT_OF_RANGE in text:
+            text += f"; {spell('allow_out_of_range')} is for the parameters of a controller of your own"
         if asked.fidelity is not None:
             text = text.replace("--set simulation.fidelity:", f"{spell('fidelity')}:")
         raise UsageError(_SET.sub(lambda set: f"{spelled_of(spell, 'settings', set[1])} {set[1]}", text)) from None

@@ -10,7 +10,7 @@ from pvlvrt_compliance.errors import spelled_of
 from pvlvrt_compliance.profile.procedure import TestCase
 from pvlvrt_compliance.scenario.events import FurtherSag
 from pvlvrt_compliance.scenario.scenario import Scenario
-from pvlvrt_compliance.simulation.parameters import Parameters
+from pvlvrt_compliance.simulation.parameters import Parameters, own_parameters
 
 if TYPE_CHECKING:
     from pvlvrt_compliance.study.job import Asked
@@ -90,6 +90,9 @@ OF_TESTS: Mapping[str, tuple[str, Callable[[TestCase], bool]]] = {
 }
 """Options, by their field, that need a test of some kind: in words, and whether a test is one."""
 
+OF_THE_RUN = ("allow_out_of_range", "csv")
+"""Options, by their field, that need something else, which `idle` and `idle_in_files` know."""
+
 
 def idle(asked: "Asked", parameters: Parameters, tests: "Sequence[Assignment]", spell: Spell) -> Iterator[str]:
     """What is given and does nothing here, a sentence each.
@@ -110,6 +113,15 @@ def idle(asked: "Asked", parameters: Parameters, tests: "Sequence[Assignment]", 
         needs = NEEDS.get(name)
         if needs is not None and not (own and name.startswith("controller.")) and not needs.has(parameters, own):
             yield f"{spelled_of(spell, 'settings', name)} {name} does nothing here: it needs {needs.words}"
+    if asked.allow_out_of_range and not (own and own_parameters(asked.settings)[0]):
+        needs_one = f"a parameter of a controller of your own ({spell('settings')} controller.NAME=VALUE)"
+        yield f"{spell('allow_out_of_range')} does nothing here: it needs {needs_one}"
     for field, (words, is_one) in OF_TESTS.items():
         if getattr(asked, field) not in (None, False) and not any(is_one(item.test) for item in tests):
             yield f"{spell(field)} does nothing here: it needs {words.format(scr=spell('scr'))}"
+
+
+def idle_in_files(csv: bool, keeps_waveforms: bool, spell: Spell) -> Iterator[str]:
+    """What is asked of the files of a run and does nothing there, a sentence each; ``csv`` is waveforms as CSV, too."""
+    if csv and not keeps_waveforms:
+        yield f"{spell('csv')} does nothing here: it needs waveforms that are kept ({spell('waveforms')} all or failed)"

@@ -8,6 +8,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from pvlvrt_compliance.controllers import Controller
 from pvlvrt_compliance.controllers.bundled import BUNDLED
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.profile.profile import Profile
@@ -24,6 +25,7 @@ from pvlvrt_compliance.study.idle import idle
 from pvlvrt_compliance.study.played import with_recordings
 from pvlvrt_compliance.study.reuse.opening import limit_of
 from pvlvrt_compliance.study.selection import Assignment
+from pvlvrt_compliance.study.settling import settles_once
 from pvlvrt_compliance.study.shards.shard import Shard, shard_of
 from pvlvrt_compliance.units import parse_fraction
 
@@ -31,14 +33,14 @@ ALL = from_asked.ALL
 Spell = from_asked.Spell
 AUTO, LOCAL = at_once.AUTO, at_once.LOCAL
 
-KEEP_ALL, KEEP_FAILED = "all", "failed"
-WAVEFORMS_KEPT = (KEEP_ALL, KEEP_FAILED, "none")
+KEEP_ALL, KEEP_FAILED, KEEP_NONE = "all", "failed", "none"
+WAVEFORMS_KEPT = (KEEP_ALL, KEEP_FAILED, KEEP_NONE)
 
-HOW = ("jobs", "cluster")
+HOW = ("jobs", "cluster", "debug", "settle_once")
 """Fields of `Asked` that say how tests are run: what is found is the same."""
 
-Factory = Callable[..., Any]
-"""A controller's class, or a function that makes one."""
+Given = Callable[..., Any] | Controller
+"""A controller's class, a function that makes one, or one that is made already."""
 
 _SAG_FIELDS = ("phases", "two_phase", "sag_type", "duration", "point_on_wave", "irradiance")
 """Fields that describe a sag of one's own."""
@@ -58,7 +60,7 @@ class Asked:
     ----------
     profiles : sequence of str or Profile
         Names, files, `ALL`, or profiles that are loaded already.
-    controller : str, class or function, optional
+    controller : str, class, function or object, optional
         A controller of one's own: its specification (``my_ctrl.py:MyController``), or in Python itself; `BUNDLED` is
         none, as without.
     mapping : str, optional
@@ -74,6 +76,8 @@ class Asked:
         What happens besides, a file or the events; a folder that recordings may lie in besides that of such a file.
     settings : sequence of str
         Parameters, ``controller.pr_integral_gain=0.2``.
+    allow_out_of_range : bool
+        Whether those of a controller of one's own may be out of the ranges that it states; the results name each.
     fidelity : str, optional
         Of the inverter.
     tests, skip : sequence of str
@@ -97,13 +101,17 @@ class Asked:
         None: in this process, where a record is made while another is judged.
     reuse, reuse_size : optional
         Folder of stored records, of which none is simulated again, and what they may take: ``2GB``, or in GB.
+    settle_once : bool
+        Whether tests that start from the same settled state go on from one, which is simulated once.
     cluster : str, optional
         Address of a dask scheduler whose workers run the tests, or `LOCAL`: one that is started on this machine, with
         as many workers as ``jobs`` says.
+    debug : bool
+        Whether the controller runs in this process, for a debugger or a sanitiser, one test after the other.
     """
 
     profiles: Sequence[str | Profile] = ()
-    controller: str | Factory | None = None
+    controller: str | Given | None = None
     mapping: str | None = None
     sag: str | float | None = None
     phases: str | None = None
@@ -120,6 +128,7 @@ class Asked:
     events: str | Sequence[Event] | None = None
     recordings: str | None = None
     settings: Sequence[str] = ()
+    allow_out_of_range: bool = False
     fidelity: str | None = None
     tests: Sequence[str] = ()
     skip: Sequence[str] = ()
@@ -135,7 +144,9 @@ class Asked:
     jobs: str | int | None = None
     reuse: str | None = None
     reuse_size: str | float | None = None
+    settle_once: bool = False
     cluster: str | None = None
+    debug: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,8 +162,9 @@ class Job:
     fail_fast: bool = False  # whether the run ends at the first test that is not passed
     notes: Sequence[str] = ()  # what there is to know of the selection
     parameters: Parameters
-    controller: str | Factory | None = None  # of the user's own
+    controller: str | Given | None = None  # of the user's own
     given: Mapping[str, float | int | bool | str]  # its parameters, as far as they are set
+    allow_out_of_range: bool = False  # whether they may be out of the ranges that it states
     mapping: str | None = None  # file that ties its ports to the plant
     waveforms: str = KEEP_ALL
     profile_files: Mapping[str, str] = field(default_factory=dict)  # by id, as far as they were named by their file
@@ -162,8 +174,15 @@ class Job:
     jobs: str | int | None = None  # as of `Asked`, checked
     reuse: str | None = None  # folder of stored records
     reuse_bytes: int = 0  # what these may take
+    settle_once: bool = False  # whether tests go on from settled states
     cluster: str | None = None
+    debug: bool = False  # whether the controller runs in this process, to be looked at
     made_ns: int = field(default_factory=time.time_ns)  # when this was made: records that were used since then stay
+
+    @property
+    def is_elsewhere(self) -> bool:
+        """Whether tests are to be run in processes of their own, or on other machines."""
+        return self.cluster is not None or self.jobs not in (None, 1)
 
 
 def make_job(asked: Asked, spell: Spell = str, *, last_run: str | None = None, is_simulated: bool = True) -> Job:
@@ -215,6 +234,7 @@ def make_job(asked: Asked, spell: Spell = str, *, last_run: str | None = None, i
         parameters=parameters,
         controller=asked.controller,
         given=given,
+        allow_out_of_range=asked.allow_out_of_range,
         mapping=asked.mapping,
         waveforms=asked.waveforms,
         profile_files=named_by_file(asked.profiles, profiles),
@@ -222,7 +242,9 @@ def make_job(asked: Asked, spell: Spell = str, *, last_run: str | None = None, i
         jobs=at_once.jobs_of(asked, spell),
         reuse=asked.reuse,
         reuse_bytes=limit_of(asked, spell),
+        settle_once=settles_once(asked, spell),
         cluster=at_once.cluster_of(asked, spell),
+        debug=asked.debug,
     )
 
 
@@ -237,6 +259,9 @@ def _check_together(asked: Asked, spell: Spell) -> None:
     if asked.mapping is not None and asked.controller is None:
         own = "is for the ports of a controller of your own; it needs"
         raise UsageError(f"{spell('mapping')} {own} {spell('controller')}")
+    if asked.debug and asked.controller is None:
+        own = "is for a controller of your own; it needs"
+        raise UsageError(f"{spell('debug')} {own} {spell('controller')}")
     if asked.mapping is not None and not isinstance(asked.controller, str):
         raise UsageError(f"{spell('mapping')}: a Python class takes its measurements by their names, without a file")
     if asked.shard is not None and (given := next((name for name in _OF_OTHERS if getattr(asked, name)), None)):

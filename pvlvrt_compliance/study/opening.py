@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from pvlvrt_compliance.controllers.process.command import is_the_server
 from pvlvrt_compliance.errors import UsageError
-from pvlvrt_compliance.study.job import Factory, Job
+from pvlvrt_compliance.study.job import Given, Job
 
 if TYPE_CHECKING:
     from pvlvrt_compliance.controllers.simulator import ForeignSimulator
@@ -30,13 +30,19 @@ def open_controller(job: Job) -> "ForeignSimulator | None":
     return controller
 
 
-def _opened(given: str | Factory, job: Job) -> "ForeignSimulator":
+def _opened(given: str | Given, job: Job) -> "ForeignSimulator":
     from pvlvrt_compliance.controllers.simulator import ForeignSimulator
 
+    if isinstance(given, str) and job.debug:
+        from pvlvrt_compliance.controllers.in_process import Debugged
+
+        return Debugged(given, job.given, job.mapping, allow_out_of_range=job.allow_out_of_range)
     if isinstance(given, str):
-        return ForeignSimulator(given, job.given, job.mapping, parameters=job.parameters)
+        return ForeignSimulator(
+            given, job.given, job.mapping, parameters=job.parameters, allow_out_of_range=job.allow_out_of_range
+        )
     from pvlvrt_compliance.controllers.here import SimulatorHere, spec_of
 
-    if spec := spec_of(given):
-        return ForeignSimulator(spec, job.given, parameters=job.parameters)
-    return SimulatorHere(given, job.given)
+    if job.is_elsewhere and (spec := spec_of(given)):
+        return ForeignSimulator(spec, job.given, parameters=job.parameters, allow_out_of_range=job.allow_out_of_range)
+    return SimulatorHere(given, job.given, allow_out_of_range=job.allow_out_of_range)

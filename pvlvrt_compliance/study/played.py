@@ -1,10 +1,12 @@
 """Recordings that tests play back: each is found and read before anything is simulated."""
 
+import stat
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.ordinary_file import mode_of
 from pvlvrt_compliance.scenario.events import Event, Recording
 from pvlvrt_compliance.scenario.recordings import Named
 from pvlvrt_compliance.scenario.scenario import Scenario
@@ -24,7 +26,7 @@ def with_recordings(
     UsageError
         When the folder is none, or a recording cannot be used: with the file that names it, line and key.
     """
-    if are_read and folder is not None and not Path(folder).is_dir():
+    if are_read and folder is not None and not stat.S_ISDIR(mode_of(Path(folder))):
         raise UsageError(f"{spell('recordings')} {folder}: it is not a folder")
     also = None if folder is None else Path(folder).absolute()
     found = tuple(_looked_for_in(item, also) for item in tests)

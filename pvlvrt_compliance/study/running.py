@@ -7,6 +7,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pvlvrt_compliance.controllers.debugging import NOTE
 from pvlvrt_compliance.errors import OutputError, UnfinishedError, UsageError
 from pvlvrt_compliance.results import ReportDetails, Results
 from pvlvrt_compliance.results.files import RESULTS
@@ -14,7 +15,8 @@ from pvlvrt_compliance.study.account import Account
 from pvlvrt_compliance.study.executors.choosing import choose_executor
 from pvlvrt_compliance.study.executors.executor import Executor
 from pvlvrt_compliance.study.executors.units import units_of
-from pvlvrt_compliance.study.job import Job, Spell
+from pvlvrt_compliance.study.idle import idle_in_files
+from pvlvrt_compliance.study.job import KEEP_NONE, Job, Spell
 from pvlvrt_compliance.study.named import Named
 from pvlvrt_compliance.study.opening import open_controller
 from pvlvrt_compliance.study.provenance import created_at
@@ -22,6 +24,7 @@ from pvlvrt_compliance.study.repository import files_of
 from pvlvrt_compliance.study.reuse.opening import reuse_notes
 from pvlvrt_compliance.study.reuse.telling import reuse_in_words
 from pvlvrt_compliance.study.session import Progress, session
+from pvlvrt_compliance.study.settling import settling_notes
 from pvlvrt_compliance.study.store import OutputFolder
 from pvlvrt_compliance.study.work import Keeping, Tested, Work
 
@@ -114,8 +117,12 @@ def run_job(
         Whatever else ends the run early, Ctrl-C among it, with a note (`__notes__`) that says so, too: finished tests
         are kept apart from the files of the last whole run.
     """
+    if job.debug and not whole:
+        tell(f"debug: {NOTE}")  # before the controller is opened, which may be where it stops
     controller: Any = whole.controller if whole else open_controller(job)
-    for note in (*job.notes, *reuse_notes(job, controller)):
+    on_files = idle_in_files(output.csv, job.waveforms != KEEP_NONE, output.spell) if output else ()
+    of_settling = () if whole else settling_notes(job, controller)
+    for note in (*job.notes, *on_files, *reuse_notes(job, controller), *of_settling):
         tell(note)
     told = _tell_new(controller, 0, tell)
     run = _Run(job, controller, command, output, allow_unjudged, settings, kept)

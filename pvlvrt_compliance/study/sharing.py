@@ -28,6 +28,8 @@ class SharedSimulator:
         Of all runs.
     is_ahead : bool
         Whether a record is made before it is asked for.
+    in_thread : bool
+        Whether another thread makes the records; else that which asks for them does, none of them ahead.
     """
 
     def __init__(
@@ -37,11 +39,13 @@ class SharedSimulator:
         parameters: Parameters,
         *,
         is_ahead: bool = True,
+        in_thread: bool = True,
     ) -> None:
         scenarios = [assignment.test.scenario for assignment in assignments]
         self._simulator = simulator
         self._parameters = parameters
-        self._is_ahead = is_ahead
+        self._is_ahead = is_ahead and in_thread
+        self._in_thread = in_thread
         self._wanted = Counter(scenarios)
         self._to_come = deque(dict.fromkeys(scenarios))
         self._kept: dict[Scenario, Waveforms] = {}
@@ -59,15 +63,20 @@ class SharedSimulator:
         self._wanted[scenario] -= 1
         waveforms = self._kept.get(scenario)
         if waveforms is None:
-            # Always in the one thread: a simulator need not stand two runs at a time.
-            ahead = self._ahead.pop(scenario, None) or self._pool.submit(self._simulator, scenario, parameters)
-            waveforms = ahead.result()
+            waveforms = self._made(scenario, parameters)
         if self._wanted[scenario] > 0:
             self._kept[scenario] = waveforms
         else:
             self._kept.pop(scenario, None)
         self._begin_next(scenario)
         return waveforms
+
+    def _made(self, scenario: Scenario, parameters: Parameters) -> Waveforms:
+        if not self._in_thread:
+            return self._simulator(scenario, parameters)
+        # Always in the one thread: a simulator need not stand two runs at a time.
+        ahead = self._ahead.pop(scenario, None) or self._pool.submit(self._simulator, scenario, parameters)
+        return ahead.result()
 
     def _begin_next(self, done: Scenario) -> None:
         """Begin with the first scenario to come that nobody has begun with."""

@@ -66,12 +66,13 @@ class OutputFolder:
             raise UsageError(f"{self._asked}: a folder is needed")
         self.folder = Path(folder)
         self.notes: list[str] = []  # what was found here and is worth telling
-        self._made = [place for place in (self.folder, *self.folder.parents) if not place.exists()]
+        self._made: list[Path] = []
         self.is_placed = False  # whether this run has taken its place
         self.is_stuck = False  # whether it can neither take its place nor leave it: the next run has to
         self._lock: Lock | None = None
         self.staging = Path()
         try:
+            self._made = [place for place in (self.folder, *self.folder.parents) if not place.exists()]
             self._lock = self._taken()
             self._settle()
             self._refuse_obstacles()

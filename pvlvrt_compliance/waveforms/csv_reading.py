@@ -55,6 +55,38 @@ def read_csv(content: bytes, wanted: Sequence[str] | None) -> tuple[Samples, dic
     return np.ascontiguousarray(values[:, 0]), columns
 
 
+def read_as_written(content: bytes, times: Sequence[str]) -> tuple[Samples, dict[str, Samples]]:
+    """Times (s) and all columns of a text with a header, numbers as they stand there, whatever units names end in.
+
+    Parameters
+    ----------
+    content : bytes
+        As of `read_csv`.
+    times : sequence of str
+        What the column of the times may be called, in small letters; the first that is there, in any letters, is it.
+        It is among the columns, too.
+
+    Raises
+    ------
+    DamagedError
+        When it cannot be read, or two columns have one name.
+    """
+    lines = _Lines(content)
+    by_name = {name: k for k, name in reversed(list(enumerate(lines.names))) if name}
+    twice = next((k for k, name in enumerate(lines.names) if name and by_name[name] != k), None)
+    if twice is not None:
+        said = f"columns {by_name[lines.names[twice]] + 1} and {twice + 1} have the same name"
+        raise DamagedError(f"{said}; which is meant is not known")
+    own = next((name for wanted in times for name in by_name if name.casefold() == wanted), None)
+    if own is None:
+        known = f"{', '.join(times[:-1])} or {times[-1]}"
+        raise DamagedError(f"line {lines.number}: there is no column of the times in seconds, called {known}")
+    columns = [Chosen(name, place, "") for name, place in sorted(by_name.items(), key=lambda each: each[1])]
+    values = _Rows(lines, columns).values()
+    found = {each.name: np.ascontiguousarray(values[:, k]) for k, each in enumerate(columns)}
+    return found[own], found
+
+
 class _Lines:
     """A text as lines, its header read: the names of its columns, those without a name at the end left out."""
 

@@ -1,7 +1,8 @@
 """Reading a recording of any make: CSV or COMTRADE; several steps as segments."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from pvlvrt_compliance.waveforms.columns import PER_UNIT, Column, DamagedError, 
 from pvlvrt_compliance.waveforms.comtrade_header import pieces_of, read_header
 from pvlvrt_compliance.waveforms.comtrade_reading import read_samples
 from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms, unit_of
-from pvlvrt_compliance.waveforms.csv_reading import read_csv
+from pvlvrt_compliance.waveforms.csv_reading import read_as_written, read_csv
 from pvlvrt_compliance.waveforms.joining import window_on_one_grid
 
 LARGEST_RECORD_BYTES = 1 << 30
@@ -99,25 +100,46 @@ def read_columns(
         return content_of(file, most_bytes, within)
 
     try:
-        if path.suffix.lower() == ".cff":
-            configuration, samples = pieces_of(content(path))
-            return read_samples(read_header(configuration), samples, channels)
-        if path.suffix.lower() != ".cfg":
-            return read_csv(content(path), channels)
-        header = read_header(content(path))
-        files = files_of(path)
-        if len(files) < 2:
-            raise DamagedError("there is no .dat file beside it")
-        return read_samples(header, content(files[1]), channels)
-    except TooLargeError:
-        raise UsageError(f"{path}: larger than {most_bytes >> 20} MiB, which a recording may have") from None
-    except (NotOrdinaryError, DamagedError) as error:
-        reason = str(error).removeprefix("cannot be read: ")
-        raise UsageError(f"{path}: cannot be read as a recording ({reason})") from None
+        with _told(path, most_bytes):
+            if path.suffix.lower() == ".cff":
+                configuration, samples = pieces_of(content(path))
+                return read_samples(read_header(configuration), samples, channels)
+            if path.suffix.lower() != ".cfg":
+                return read_csv(content(path), channels)
+            header = read_header(content(path))
+            files = files_of(path)
+            if len(files) < 2:
+                raise DamagedError("there is no .dat file beside it")
+            return read_samples(header, content(files[1]), channels)
     except NoChannelError as error:
         ours = [name for name in error.others if _OURS.fullmatch(name)]
         hint = did_you_mean(error.name, ours)
         raise UsageError(f"{path}: no channel {error.name!r} among its {len(error.others)}{hint}") from None
+
+
+def read_evenly(path: Path, times: Sequence[str], *, most_bytes: int = LARGEST_RECORD_BYTES) -> Segment:
+    """All columns of a CSV file of anybody's, numbers as they stand there, evenly spaced in time.
+
+    Parameters
+    ----------
+    path : Path
+    times : sequence of str
+        What the column of the times (s) may be called, as of `csv_reading.read_as_written`.
+    most_bytes : int
+        How large it may be.
+
+    Raises
+    ------
+    UsageError
+        When it cannot be read, or the samples are not on one uniform grid.
+    """
+    with _told(path, most_bytes):
+        t, columns = read_as_written(content_of(path, most_bytes, None), times)
+    segments = in_segments(path, t, columns).segments
+    if len(segments) > 1:
+        where = f"from {segments[0].end_s:g} s on with another step than before"
+        raise UsageError(f"{path}: the samples are not evenly spaced in time: they go on {where}")
+    return segments[0]
 
 
 def in_segments(path: Path, t: Samples, columns: Mapping[str, Samples]) -> Waveforms:
@@ -135,6 +157,18 @@ def in_segments(path: Path, t: Samples, columns: Mapping[str, Samples]) -> Wavef
             for i, j in pairwise(bounds)
         )
     )
+
+
+@contextmanager
+def _told(path: Path, most_bytes: int) -> Iterator[None]:
+    """Have what is wrong with a file told with its name."""
+    try:
+        yield
+    except TooLargeError:
+        raise UsageError(f"{path}: larger than {most_bytes >> 20} MiB, which a recording may have") from None
+    except (NotOrdinaryError, DamagedError) as error:
+        reason = str(error).removeprefix("cannot be read: ")
+        raise UsageError(f"{path}: cannot be read as a recording ({reason})") from None
 
 
 def files_of(recording: Path) -> list[Path]:

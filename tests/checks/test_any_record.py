@@ -1,5 +1,6 @@
 """Whatever a record is like, every built-in check gives a verdict that holds together."""
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,9 @@ from hypothesis import strategies as st
 
 from draws import draws
 from pvlvrt_compliance.checks.evaluate import evaluate
+from pvlvrt_compliance.disturbance.found import Thresholds, disturbance_found
+from pvlvrt_compliance.errors import MeasurementError
+from pvlvrt_compliance.evidence.collect import normal_voltage
 from pvlvrt_compliance.profile import Profile, load_profile
 from pvlvrt_compliance.profile.requirements import BUILT_IN, requirements_of
 from pvlvrt_compliance.results import Status, Verdict
@@ -165,3 +169,18 @@ def with_trust(profile: Profile) -> Profile:
 def nominal_of(profile: Profile) -> Nominal:
     """Base of the per-unit values at the profile's frequency."""
     return Nominal(frequency_hz=profile.procedure.frequency_hz.value if profile.procedure.frequency_hz else 50.0)
+
+
+@pytest.mark.parametrize("value", [1e306, -np.inf, np.nan])
+@pytest.mark.parametrize("channel", ["u_b_v", "u0_b_v", "i_b_a", "v_dc_v"])
+def test_numbers_that_overflow(bench, channel, value):
+    """Whatever is computed with them, what is said is a verdict's reason, and no warning of one line of the source."""
+    record = bench(asked=Sag(depth=0.5, phases="abc"), duration_s=0.3, profile=PROFILES[1])
+    (segment,) = record.waveforms().segments
+    spoiled = segment.channels[channel].copy()
+    spoiled[len(spoiled) // 3 :: 7] = value
+    waveforms = Waveforms((Segment(segment.t0_s, segment.dt_s, {**segment.channels, channel: spoiled}),))
+    thresholds = Thresholds(normal_voltage(PROFILES[1].thresholds))
+    with suppress(MeasurementError):  # it may show none
+        disturbance_found(waveforms, record.nominal, thresholds)
+    assert evaluate(PROFILES[1], record.test, waveforms, record.nominal, record.available_power_w).checks

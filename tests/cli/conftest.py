@@ -1,4 +1,4 @@
-"""The command, run inside this process or as a program of its own, and what it wrote."""
+"""The command, run inside this process or as a program of its own, and what it wrote; what a comparison wrote."""
 
 import io
 import json
@@ -17,6 +17,8 @@ import lxml.html
 import pytest
 
 from consoles import surroundings
+from profile_files import HEAD
+from pvlvrt_compliance import Comparison
 from pvlvrt_compliance.cli.main import run
 from waiting import PATIENCE_S
 
@@ -144,6 +146,35 @@ def judge(tmp_path: Path) -> Callable[..., tuple[Ended, Reports]]:
     return judge
 
 
+class Compared(NamedTuple):
+    """How a comparison ended, and the folder that it was written into."""
+
+    status: int
+    out: str
+    err: str
+    folder: Path
+
+    @property
+    def comparison(self) -> Comparison:
+        """What it found."""
+        return Comparison.model_validate_json((self.folder / "comparison.json").read_bytes())
+
+    @property
+    def page(self) -> Any:
+        """Its page."""
+        return lxml.html.document_fromstring((self.folder / "comparison.html").read_bytes())
+
+
+@pytest.fixture
+def beside(tmp_path: Path) -> Callable[..., Compared]:
+    """Compare: ``beside(old, new, *options)``."""
+
+    def run(old: str | Path, new: str | Path, *options: str | Path) -> Compared:
+        return Compared(*_command("compare", old, new, "--output", tmp_path / "out", *options), tmp_path / "out")
+
+    return run
+
+
 class MainJob(NamedTuple):
     """The main job, run as a program."""
 
@@ -157,3 +188,14 @@ def main_job(tmp_path_factory: pytest.TempPathFactory) -> MainJob:
     folder = tmp_path_factory.mktemp("main-job")
     ended = _program("--profile", "iec61400-21", "--sag", "90%", "--csv", cwd=folder)
     return MainJob(ended, Reports(folder / "pvlvrt-report"))
+
+
+@pytest.fixture
+def mine(tmp_path: Path) -> Callable[..., Path]:
+    """Write a profile: ``mine(text) -> path``."""
+
+    def write(text: str = "", head: str = HEAD) -> Path:
+        (tmp_path / "mine.toml").write_text(head + text, "utf-8")
+        return tmp_path / "mine.toml"
+
+    return write

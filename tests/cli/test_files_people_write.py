@@ -2,14 +2,16 @@
 
 import os
 import sys
+from pathlib import Path
 
 import pytest
 
+PROGRAM = Path(__file__).parents[2] / "examples" / "program-python" / "controller.py"
 MAIN = ("--profile", "iec61400-21", "--sag", "50%")
 OPTIONS = {
     "profile": ("--sag", "50%", "--profile"),
     "events": (*MAIN, "--events"),
-    "mapping": (*MAIN, "--controller", f"stdio:{sys.executable} absent.py", "--mapping"),
+    "mapping": (*MAIN, "--controller", f'stdio:"{sys.executable}" "{PROGRAM}"', "--mapping"),
 }
 MISSPELT = {
     "profile": (

@@ -35,6 +35,7 @@ TOUCHES = {
     "baseline/update.py": {"study.baseline.files"},
     "controllers/inspect.py": {"controllers", "simulation.parameters"},  # which load no kernel
     "controllers/new.py": {"controllers.projects"},
+    "controllers/replay.py": {"controllers.replay", "simulation.parameters"},  # run in a process of its own
     "controllers/header.py": {"controllers.library"},
 }
 

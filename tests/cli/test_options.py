@@ -274,3 +274,5 @@ def test_a_flag_can_be_taken_back(command):
     taken_back = command("--profile", "iec61400-21", "--list", "--no-list", "--format", "nothing")
     assert taken_back.status == 2
     assert "--format: no format 'nothing'" in taken_back.err
+    given_again = command("--profile", "iec61400-21", "--no-list", "--list", "--no-fail-fast", "--list")
+    assert "tests of iec61400-21" in given_again.out

@@ -61,3 +61,12 @@ def test_a_figure_that_cannot_be_replaced(command, monkeypatch, tmp_path):
     _fill_disk(monkeypatch, 0)
     assert command("profiles", "plot", "iec61400-21", "--output", figure).status == 3
     assert [(path, path.read_text()) for path in tmp_path.iterdir()] == [(figure, "before")]
+
+
+def test_waveforms_as_csv_that_are_not_kept(judge):
+    """It is told that there are none, as of all that is given and does nothing; the run is as without it."""
+    said = "--csv does nothing here: it needs waveforms that are kept (--waveforms all or failed)"
+    for kept in ("none", "all"):
+        ended, found = judge("--sag", "20%", "--duration", "20ms", "--csv", "--waveforms", kept)
+        assert (said in ended.err) == (kept == "none")
+        assert any(name.endswith(".csv") for name in found.files) == (kept == "all")

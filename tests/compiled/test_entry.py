@@ -72,6 +72,23 @@ def array_of(x: float) -> np.ndarray:
     return np.array([x, 2 * x])
 
 
+def itself(x: np.ndarray) -> np.ndarray:
+    """Return the caller's own array."""
+    x[0] += 1.0
+    return x
+
+
+def with_one_of_its_own(x: float) -> tuple[float, np.ndarray]:
+    """Return an array among others that nobody but this has."""
+    return x, np.array([x, 2 * x])
+
+
+def with_the_callers(x: Outer) -> tuple[float, Outer]:
+    """Return a state whose array the caller has."""
+    x.row[0] += 1.0
+    return x.pair[0], Outer(inner=x.inner, row=x.row, pair=(2 * x.pair[0], x.pair[1]))
+
+
 def entry_of(function, root) -> Entry:
     """Entry of a function, in a folder for its code."""
     return Entry(function, Sources(function, __name__, None), root, error_model="numpy")
@@ -143,6 +160,19 @@ def test_what_is_no_number_is_numbas(tmp_path):
         assert list(made(0.5)) == [0.5, 1.0]
     assert [file.suffix for file in kept_in(tmp_path)] == [".nbi"]
     assert sum(made.dispatcher.stats.cache_hits.values()) == 1
+
+
+def test_arrays_that_come_back(tmp_path):
+    """An array that is the caller's is left out of a state that comes back; any other comes back by numba."""
+    x = outer()
+    before = x.row[0]
+    half, after = entry_of(with_the_callers, tmp_path)(x)
+    assert (half, after.row, x.row[0]) == (x.pair[0], None, before + 1)
+    assert after.pair == (2 * x.pair[0], x.pair[1])
+    alone = entry_of(itself, tmp_path)(x.row)
+    assert alone is x.row or np.array_equal(alone, x.row)
+    _, own = entry_of(with_one_of_its_own, tmp_path)(0.5)
+    assert list(own) == [0.5, 1.0]
 
 
 @pytest.mark.parametrize(

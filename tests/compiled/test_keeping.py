@@ -277,3 +277,14 @@ def test_a_line_of_the_command_spells_a_name_that_is_no_text(monkeypatch):
         other = warnings.formatwarning(UserWarning("b"), UserWarning, "file", 1)
     assert line == "pvlvrt-check: a\\xff\n"
     assert other.startswith("file:1: UserWarning: b")
+
+
+def test_any_number_of_commands_in_one_process(monkeypatch):
+    """A warning goes through as many functions after a thousand commands as after the first."""
+    monkeypatch.setattr(warnings, "formatwarning", warnings.formatwarning)
+    with warnings.catch_warnings():
+        notes.tell_in_lines()
+        once = warnings.formatwarning
+        for _ in range(2000):
+            notes.tell_in_lines()
+    assert warnings.formatwarning is once

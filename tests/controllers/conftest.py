@@ -7,6 +7,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 
 import pytest
+import vendor_model
 
 from pvlvrt_compliance.controllers.library import HEADER
 from pvlvrt_compliance.controllers.simulator import ForeignSimulator
@@ -34,6 +35,12 @@ def gcc() -> str:
     if found is None:
         pytest.skip("gcc is missing, so no controller in C can be built")
     return found
+
+
+@pytest.fixture(scope="session")
+def vendor_forms(gcc: str, tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """Specification of the vendor's model in C, as an FMU and in Python, by the form."""
+    return vendor_model.built(tmp_path_factory.mktemp("vendor"), gcc)
 
 
 @pytest.fixture(scope="session")

@@ -75,24 +75,27 @@ def packed(folder: Path, text: str, binary: Path | None, place: str) -> Path:
     return file
 
 
-def compiled(folder: Path, version: int, source: Path = SOURCE) -> Path:
-    """Binary of the small FMU, or of a source that was made of its; skips where there is no compiler."""
+def compiled(folder: Path, version: int, source: Path = SOURCE, *flags: str) -> Path:
+    """Binary of the small FMU, or of another source, with flags; skips where there is no compiler."""
     compiler = shutil.which("gcc") or shutil.which("cc")
     if compiler is None:
         pytest.skip("no C compiler")
-    (folder / "fmi3_rest.h").write_text("\n".join(f"DO_NOTHING({name})" for name in _rest_of_fmi3()))
+    rest = "\n".join(f"DO_NOTHING({name})" for name in _rest_of_fmi(version, source))
+    (folder / "rest_of_fmi.h").write_text(rest, "utf-8")
     binary = folder / "small.so"
-    command = [compiler, "-O1", "-shared", "-fPIC", f"-DFMI={version}", f"-I{folder}", str(source), "-o", str(binary)]
-    subprocess.run(command, check=True)
+    given = ["-O1", "-shared", "-fPIC", f"-DFMI={version}", f"-I{folder}", *flags]
+    subprocess.run([compiler, *given, str(source), "-o", str(binary), "-lm"], check=True)
     return binary
 
 
-def _rest_of_fmi3() -> list[str]:
-    """Functions of FMI 3 that the library insists on and the small FMU does not have."""
+def _rest_of_fmi(version: int, source: Path) -> list[str]:
+    """Functions of FMI that the library insists on and a source does not have."""
+    from fmpy.fmi2 import FMU2Slave
     from fmpy.fmi3 import FMU3Slave
 
-    source = SOURCE.read_text("utf-8")
-    return [name for name in dir(FMU3Slave) if name.startswith("fmi3") and f"{name}(" not in source]
+    text = source.read_text("utf-8")
+    names = dir(FMU2Slave if version == 2 else FMU3Slave)
+    return [name for name in names if name.startswith(f"fmi{version}") and f"{name}(" not in text]
 
 
 def built(script: Path, folder: Path, package: str = "pythonfmu") -> Path:

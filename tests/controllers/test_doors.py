@@ -18,7 +18,7 @@ def door_of(monkeypatch):
         class Door:
             written, schemes, suffixes = door.written, door.schemes, door.suffixes
 
-            def __init__(self, *_arguments):
+            def __init__(self, *_arguments, **_named):
                 self.room = door.__module__.split(".")[-2]
 
         return Door

@@ -11,7 +11,8 @@ from fmu_sources import description, packed
 from pvlvrt_compliance.controllers.description import ParameterInfo
 from pvlvrt_compliance.controllers.door import DoorError
 from pvlvrt_compliance.controllers.doors import door_to
-from pvlvrt_compliance.controllers.given_parameters import checked_parameters, seconds
+from pvlvrt_compliance.controllers.given_parameters import beyond_their_ranges, checked_parameters, seconds
+from pvlvrt_compliance.units import Nominal
 
 FOLDER = Path(__file__).parent
 KINDS = ("python", "library", "fmi2", "fmi3", "program")
@@ -88,8 +89,8 @@ def door(compiled, tmp_path, monkeypatch):
             return f'stdio:"{sys.executable}" "{FOLDER / "parameterised.py"}"'
         return str(fmu(tmp_path, int(kind[-1])))
 
-    def door(kind, given):
-        opened.append(door_to(spec(kind), given))
+    def door(kind, given, **allowing):
+        opened.append(door_to(spec(kind), given, **allowing))
         return opened[-1]
 
     yield door
@@ -162,6 +163,43 @@ def test_half_a_range(minimum, maximum, words):
     """A range may be open."""
     with pytest.raises(DoorError, match=f"is out of range; {words} is allowed"):
         checked_parameters({"x": 0.0}, [ParameterInfo("x", 1.0, minimum=minimum, maximum=maximum)])
+
+
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "python"])
+def test_a_range_is_left_aside_where_that_is_allowed(door, kind):
+    """Of the controller's own ranges none holds then; types, names and what a type holds still do."""
+    given = {"gain": -1, "status": 7}
+    described = door(kind, given, allow_out_of_range=True).describe()
+    assert beyond_their_ranges(given, described.parameters) == {"gain": "-1 (0 to 2)", "status": "7 (0 to 6)"}
+    for mistaken, name, value, words in in_kinds(MISTAKES):
+        if mistaken == kind and "out of range" not in words:
+            with pytest.raises(DoorError) as error:
+                door(kind, {name: value}, allow_out_of_range=True)
+            assert str(error.value).startswith(f"--set controller.{name}: {words}")
+    if kind != "program":  # which has numbers of one type alone
+        with pytest.raises(DoorError, match=f"{2**32} is out of range; -2147483648 to 2147483647 is allowed"):
+            door(kind, {"status": 2**32}, allow_out_of_range=True)
+
+
+def test_what_is_beyond_its_range_is_named():
+    """With its unit and the range, open or not; a character counts by its code, and what is not given does not."""
+    known = [*KNOWN, ParameterInfo("letter", 65, maximum=64), ParameterInfo("H", 1.0, "s", minimum=0.1)]
+    given = {"gain": 2.0000001, "letter": "A", "H": 0, "softly": True, "word": "9", "reply_timeout_s": 1e9}
+    assert beyond_their_ranges(given, known) == {
+        "gain": "2.0000001 pu (0 to 2)",
+        "letter": "65 (64 and less)",
+        "H": "0 s (0.1 and more)",
+    }
+    assert beyond_their_ranges({"gain": 2, "status": 0}, known) == {}
+    assert checked_parameters({"gain": -5.0}, KNOWN, allow_out_of_range=True) == {"gain": -5.0}
+
+
+def test_what_is_allowed_reaches_the_controller(door):
+    """The value itself, not the nearest within the range."""
+    opened = door("library", {"gain": -3.5, "tenth": 0}, allow_out_of_range=True)
+    opened.open(Nominal())
+    found = opened._open_instance().parameters()
+    assert (found["gain"], found["tenth"]) == (-3.5, 0.0)
 
 
 def test_a_type_of_numbers_is_a_range(door):

@@ -74,8 +74,7 @@ def test_a_function_that_makes_it():
 @pytest.mark.parametrize(
     ("given", "says"),
     [
-        (Small(), "give its class, or a function that makes it"),
-        (3, "give its class, or a function that makes it"),
+        (3, "give a class, a function that makes it, or a controller that is made already"),
         (dict, "has no attribute sample_time_s"),
         (type("Half", (), {"sample_time_s": 1e-4, "reset": print}), "has no method step"),
         (type("Fails", (), {"__init__": lambda _: 1 / 0}), "ZeroDivisionError"),

@@ -87,7 +87,7 @@ def test_switches_do_not_act_before_the_controller_does(run):
     ("cls", "said"),
     [
         ("Wrong", "Wrong.switches is ('trip', 'open'); allowed are trip, block, restart, each once"),
-        ("TooFew", "step() must return six numbers, not ("),
+        ("TooFew", "step() must return six numbers (m_a, m_b, m_c, trip, block, restart), not ("),
     ],
 )
 def test_switches_that_are_none(opened, cls, said):

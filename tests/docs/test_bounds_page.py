@@ -12,7 +12,7 @@ from pvlvrt_compliance.scenario.events import LONGEST_S, MOST_INSTANTS, MOST_PRO
 from pvlvrt_compliance.simulation.parameters import LONGEST, LONGEST_PERIOD_S, SHORTEST_PERIOD_S, parameter_names
 from pvlvrt_compliance.simulation.thinning import MOST_BYTES
 from pvlvrt_compliance.study.cost import MOST_STEPS
-from pvlvrt_compliance.study.idle import NEEDS, OF_TESTS
+from pvlvrt_compliance.study.idle import NEEDS, OF_TESTS, OF_THE_RUN
 from validation.places import DOCS
 
 TEXT = (DOCS / "bounds.md").read_text("utf-8")
@@ -48,7 +48,8 @@ def test_what_needs_what_is_whole():
     """Each parameter and option of the tables of the program, and no other."""
     named = [name for row in NEEDED.splitlines() if row.startswith("| `") for name in _code(row.split(" | ")[0])]
     assert {name for name in named if not name.startswith("--")} == set(NEEDS)
-    assert {name.removeprefix("--").replace("-", "_") for name in named if name.startswith("--")} == set(OF_TESTS)
+    options = {name.removeprefix("--").replace("-", "_") for name in named if name.startswith("--")}
+    assert options == {*OF_TESTS, *OF_THE_RUN}
     assert set(NEEDS) <= set(parameter_names())
 
 

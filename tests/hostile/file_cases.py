@@ -86,8 +86,12 @@ def settings(rng: Random) -> Case:
         file = damage.damaged_file(trees.to_toml(table), rng)
     elif rng.random() < 0.3:
         every = [option for option in options.commands()[0].options if option.opts[0] not in options.NEVER]
+        names = [rng.choice(every).opts[0] for _ in "ab"]
         odd = {
-            rng.choice(every).opts[0][2:].replace("-", "_"): rng.choice((values.text, values.number))(rng) for _ in "ab"
+            name[2:].replace("-", "_"): rng.choice(options.ONLY[name])
+            if name in options.ONLY
+            else rng.choice((values.text, values.number))(rng)
+            for name in names
         }
         file = damage.of_text(trees.to_toml(table | odd))
     given = ("--config", name) if name == "odd.toml" else ()

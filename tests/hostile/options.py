@@ -37,7 +37,6 @@ GOOD: dict[str, tuple[str, ...]] = {
     "--check": ("reactive_support", "dc_ripple"),
     "--shard": ("1/2", "2/2"),
     "--jobs": ("1", "auto"),
-    "--cluster": (),
     "--reuse": ("out/records",),
     "--reuse-size": ("2GB", "500MB"),
     "--output": ("out",),
@@ -56,7 +55,16 @@ GOOD: dict[str, tuple[str, ...]] = {
 }
 """Values of options that are of use, by the first name of each; of what is not here, an example is not known."""
 
-NEVER = {"--cluster", "--show-completion", "--install-completion"}
+ONLY: dict[str, tuple[str, ...]] = {
+    "--cluster": (
+        "", " ", "tcp://", "tls://", "ws://", "://", "inproc://x", "ucx://x", "http://x", "http://[", "tcp//x", "0",
+        "tcp://127.0.0.1", "tcp://127.0.0.1:1e3", "tcp://[::1", "tcp://::::", "::1", "-1", "tcp://a:b", "../x",
+        "/dev/zero", f"tcp://{values.DIGITS}", "x" * 5000, *values.CONTROL, *values.RUNNER, *values.NO_TEXT,
+    ),
+}  # fmt: skip
+"""What an option is given and nothing else: an address that is one would be called, and who knows who answers."""
+
+NEVER = {"--show-completion", "--install-completion"}
 """What starts things that are not this process's to end."""
 
 ARGUMENTS: dict[tuple[str, ...], tuple[str, ...]] = {
@@ -100,7 +108,9 @@ def words_of(option: Any, rng: Random, good: float = 0.5) -> list[str]:
     if option.is_flag or option.count:
         return [name] if rng.random() < 0.9 else [f"{name}={values.argument(rng)}"]
     known = GOOD.get(option.opts[0], ())
-    if known and rng.random() < good:
+    if option.opts[0] in ONLY:
+        value = rng.choice(ONLY[option.opts[0]])
+    elif known and rng.random() < good:
         value = rng.choice(known)
     elif known and rng.random() < 0.4:
         value = _altered(rng.choice(known), rng)

@@ -65,9 +65,13 @@ def _said(case: Case, ended: Ended) -> Iterator[str]:
     if any(len(line) > LONGEST_LINE for line in err.split("\n")):
         yield f"stderr has a line of {max(map(len, err.split(chr(10))))} characters"
     if ended.status == 2:
-        yield from _reason(out, err)
+        yield from _reason(out if case.arguments[:2] != _SHOWS else "", err)
     if case.arguments[:1] == (EVALUATE,) and ended.status != 2 and not soundness.finite(out.encode("utf-8", "replace")):
         yield "the results are no JSON, or have numbers that are none"
+
+
+_SHOWS = ("controllers", "inspect")
+"""Shows what is known of a controller that cannot be run, too."""
 
 
 def _commands(line: str, case: Case) -> bool:

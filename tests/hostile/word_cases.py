@@ -66,6 +66,7 @@ def environment(rng: Random) -> Case:
         name = rng.choice(names)
         known = options.GOOD.get(name, ())
         value = rng.choice(known) if known and rng.random() < 0.5 else values.argument(rng)
+        value = rng.choice(options.ONLY.get(name, (value,)))
         found[f"PVLVRT_{name.lstrip('-').replace('-', '_').upper()}"] = value
     others = (
         "SOURCE_DATE_EPOCH",

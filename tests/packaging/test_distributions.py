@@ -4,134 +4,21 @@ import json
 import os
 import re
 import shutil
-import subprocess
 import sys
-import tarfile
-import zipfile
 from functools import cache
 from pathlib import Path
 
 import pytest
 
 import jobs
+from calls import call_program, completed
 from pvlvrt_compliance.resources import resource_folder
-from waiting import PATIENCE_S
 
 pytestmark = pytest.mark.slow
 
 _NAME = "pvlvrt_compliance"
+
 ONE_TEST = {"PVLVRT_TEST": "VD2-full-1"}
-_BUILT = {".so", ".o"}
-_LEFT_BY_TOOLS = {"__pycache__", "build", ".pytest_cache", ".hypothesis"}
-
-
-def _is_left(path):
-    """Whether a tool has left this file behind."""
-    return path.suffix in _BUILT or bool(_LEFT_BY_TOOLS & set(path.parts))
-
-
-def _call(*command, cwd):
-    """Run a program in an environment that does not lead back to this one."""
-    inherited = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "VIRTUAL_ENV"))}
-    return subprocess.run(
-        list(map(str, command)), cwd=cwd, env=inherited, capture_output=True, text=True, check=False, timeout=PATIENCE_S
-    )
-
-
-def _done(*command, cwd):
-    done = _call(*command, cwd=cwd)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done
-
-
-@pytest.fixture(scope="module")
-def root(request):
-    """The checkout."""
-    return request.config.rootpath
-
-
-@pytest.fixture(scope="module")
-def distributions(root, tmp_path_factory):
-    """Build the sdist, and the wheel from the sdist alone."""
-    folder = tmp_path_factory.mktemp("dist")
-    _done(sys.executable, "-m", "build", "--outdir", folder, root, cwd=folder)
-    return {path.suffix: path for path in folder.iterdir()}
-
-
-@pytest.fixture(scope="module")
-def wheel_files(distributions):
-    """Content of the wheel by name."""
-    with zipfile.ZipFile(distributions[".whl"]) as wheel:
-        return {name: wheel.read(name) for name in wheel.namelist()}
-
-
-@pytest.fixture(scope="module")
-def sdist_files(distributions):
-    """Names in the sdist, without its top folder."""
-    with tarfile.open(distributions[".gz"]) as sdist:
-        return {name.partition("/")[2] for name in sdist.getnames()}
-
-
-def test_wheel_has_every_source_profile_and_template(root, wheel_files):
-    """What the package needs at run time is inside the package, byte for byte."""
-    sources = {p.relative_to(root).as_posix(): p for p in (root / _NAME).rglob("*.py")}
-    sources |= {f"{_NAME}/{p.relative_to(root).as_posix()}": p for p in (root / "profiles").glob("*.toml")}
-    sources |= {f"{_NAME}/{p.relative_to(root).as_posix()}": p for p in (root / "reports").iterdir() if p.is_file()}
-    sources |= {p.relative_to(root).as_posix(): p for p in (root / _NAME).rglob("*.h")}
-    sources |= {p.relative_to(root).as_posix(): p for p in _templates(root)}
-    sources[f"{_NAME}/py.typed"] = root / _NAME / "py.typed"
-    assert {name for name in sources if name not in wheel_files} == set()
-    assert {name for name, path in sources.items() if wheel_files[name] != path.read_bytes()} == set()
-
-
-def _templates(root):
-    return [
-        p
-        for p in (root / _NAME / "controllers" / "templates").rglob("*")
-        if p.is_file() and "__pycache__" not in p.parts
-    ]
-
-
-def test_wheel_has_nothing_else(wheel_files):
-    """No tests, no benchmarks, no caches; the licence goes with it."""
-    tops = {name.partition("/")[0] for name in wheel_files}
-    assert {top for top in tops if not top.endswith(".dist-info")} == {_NAME}
-    inside = {Path(name).suffix for name in wheel_files if name.startswith(f"{_NAME}/")}
-    assert inside <= {
-        ".py",
-        ".typed",
-        ".toml",
-        ".j2",
-        ".typ",
-        ".css",
-        ".js",
-        ".svg",
-        ".c",
-        ".h",
-        ".md",
-        ".txt",
-        ".yml",
-        "",
-    }
-    assert not any("cache" in folder for name in wheel_files for folder in Path(name).parts[:-1])
-    assert any(name.endswith("/licenses/LICENSE") for name in wheel_files)
-
-
-def test_sdist_can_be_tested(root, sdist_files):
-    """The sdist carries tests, and what they need, besides what the wheel is made from."""
-    folders = ("tests", "profiles", "reports", "benchmarks", "examples", "validation", "docs")
-    wanted = [p for folder in folders for p in (root / folder).rglob("*.*")]
-    names = {p.relative_to(root).as_posix() for p in wanted if p.is_file() and not _is_left(p)}
-    assert names - sdist_files == set()
-    assert sdist_files >= {"README.md", "LICENSE", "pyproject.toml"}
-
-
-def test_checkout_and_sdist_give_the_same_wheel(root, wheel_files, tmp_path):
-    """A wheel built from the checkout has the same files as one built from the sdist."""
-    _done(sys.executable, "-m", "build", "--wheel", "--outdir", tmp_path, root, cwd=tmp_path)
-    with zipfile.ZipFile(next(tmp_path.glob("*.whl"))) as wheel:
-        direct = {name: wheel.read(name) for name in wheel.namelist()}
-    assert {name for name in direct.keys() | wheel_files.keys() if direct.get(name) != wheel_files.get(name)} == set()
 
 
 @pytest.fixture(scope="module")
@@ -143,7 +30,7 @@ def project(distributions, root, tmp_path_factory):
     def project(kind):
         new = ("controllers", "new", "--kind", kind, "--install-from", distributions[".whl"], folder / kind)
         path = os.pathsep.join(filter(None, [str(root), os.environ.get("PYTHONPATH")]))
-        _done("env", f"PYTHONPATH={path}", sys.executable, "-m", _NAME, *new, cwd=folder)
+        completed("env", f"PYTHONPATH={path}", sys.executable, "-m", _NAME, *new, cwd=folder)
         return folder / kind
 
     return project
@@ -153,7 +40,7 @@ def project(distributions, root, tmp_path_factory):
 def first_job(project, tmp_path_factory):
     """How each command of the job on GitHub ended, in a fresh environment; and where that has its programs."""
     environment, folder = tmp_path_factory.mktemp("fresh") / "venv", project("python")
-    _done(sys.executable, "-m", "venv", environment, cwd=environment.parent)
+    completed(sys.executable, "-m", "venv", environment, cwd=environment.parent)
     programs = environment / ("Scripts" if os.name == "nt" else "bin")
     job = jobs.github_job((folder / jobs.GITHUB).read_text("utf-8"), folder)
     return jobs.run(job, folder, programs, **ONE_TEST), programs
@@ -187,7 +74,7 @@ def wheels(distributions, tmp_path_factory):
     """Folder of what the wheel needs, fetched where there is a network."""
     folder = tmp_path_factory.mktemp("wheels")
     pip = (sys.executable, "-m", "pip")
-    _done(*pip, "download", "--quiet", "--dest", folder, distributions[".whl"], cwd=folder)
+    completed(*pip, "download", "--quiet", "--dest", folder, distributions[".whl"], cwd=folder)
     return folder
 
 
@@ -195,14 +82,14 @@ def wheels(distributions, tmp_path_factory):
 def installed(distributions, wheels, tmp_path_factory):
     """Folder of the programs of a fresh environment that has the wheel, nothing of the checkout, and no network."""
     environment = tmp_path_factory.mktemp("fresh") / "venv"
-    _done(sys.executable, "-m", "venv", environment, cwd=environment.parent)
+    completed(sys.executable, "-m", "venv", environment, cwd=environment.parent)
     programs = environment / ("Scripts" if os.name == "nt" else "bin")
     where = (programs / "python", "-c", "import sysconfig; print(sysconfig.get_path('purelib'))")
-    site = Path(_done(*where, cwd=environment.parent).stdout.strip())
+    site = Path(completed(*where, cwd=environment.parent).stdout.strip())
     (site / "cut_off.py").write_text(CUT_OFF, "utf-8")
     (site / "cut_off.pth").write_text("import cut_off\n", "utf-8")
     pip = (programs / "python", "-m", "pip", "install", "--quiet", "--no-index", "--find-links", wheels)
-    _done(*pip, distributions[".whl"], cwd=environment.parent)
+    completed(*pip, distributions[".whl"], cwd=environment.parent)
     return programs
 
 
@@ -210,12 +97,12 @@ def test_the_environment_has_no_network(installed, tmp_path):
     """What these tests show is shown without a network: an address elsewhere, or a name, is not reached."""
     for address in ("203.0.113.1", "example.org"):
         script = f"import socket; socket.create_connection(({address!r}, 80), timeout=5)"
-        assert "no network" in _call(installed / "python", "-c", script, cwd=tmp_path).stderr
+        assert "no network" in call_program(installed / "python", "-c", script, cwd=tmp_path).stderr
 
 
 def test_main_job_from_a_wheel(installed, tmp_path):
     """The wheel alone, with what it declares as dependencies, does the main job from any folder."""
-    done = _done(installed / "pvlvrt-check", "--profile", "iec61400-21", "--sag", "90%", cwd=tmp_path)
+    done = completed(installed / "pvlvrt-check", "--profile", "iec61400-21", "--sag", "90%", cwd=tmp_path)
     assert "PASS: 1 test; checks: 7 pass" in done.stdout
     assert done.stderr == ""
     reports = tmp_path / "pvlvrt-report"
@@ -232,7 +119,7 @@ def test_resources_of_a_wheel_are_its_own(installed, tmp_path):
         "package = Path(pvlvrt_compliance.__file__).resolve().parent;"
         "print([resource_folder(name) == package / name for name in ('profiles', 'reports')])"
     )
-    assert _done(installed / "python", "-c", script, cwd=tmp_path).stdout.strip() == "[True, True]"
+    assert completed(installed / "python", "-c", script, cwd=tmp_path).stdout.strip() == "[True, True]"
 
 
 def test_first_job_of_a_project(first_job, project):
@@ -291,7 +178,7 @@ def test_jobs_of_other_kinds(first_job, project, kind):
 
 def test_job_without_its_wheel(installed, tmp_path):
     """A project that still wants its wheel says so when it is begun, and its job ends by naming the file."""
-    begun = _done(installed / "pvlvrt-check", "controllers", "new", "mine", cwd=tmp_path)
+    begun = completed(installed / "pvlvrt-check", "controllers", "new", "mine", cwd=tmp_path)
     (wheel,) = re.findall(r"pvlvrt_compliance-\S+\.whl", begun.stderr)
     folder = tmp_path / "mine"
     job = jobs.gitlab_job((folder / jobs.GITLAB).read_text("utf-8"), folder)
@@ -302,7 +189,7 @@ def test_job_without_its_wheel(installed, tmp_path):
 
 def test_header_from_a_wheel(installed, tmp_path):
     """The installed program prints the C header."""
-    assert "Model_Outputs" in _done(installed / "pvlvrt-check", "controllers", "header", cwd=tmp_path).stdout
+    assert "Model_Outputs" in completed(installed / "pvlvrt-check", "controllers", "header", cwd=tmp_path).stdout
 
 
 def kept_in(folder):
@@ -313,7 +200,7 @@ def kept_in(folder):
 
 def test_bad_input_from_a_wheel(installed, tmp_path):
     """The installed program ends with the status of the verdict, and writes nothing on wrong usage."""
-    done = _call(installed / "pvlvrt-check", "--profile", "nowhere", "--sag", "90%", cwd=tmp_path)
+    done = call_program(installed / "pvlvrt-check", "--profile", "nowhere", "--sag", "90%", cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
     assert "known: dk-rfg, " in done.stderr
     assert list(tmp_path.iterdir()) == []
@@ -322,14 +209,14 @@ def test_bad_input_from_a_wheel(installed, tmp_path):
 def test_editable_install_uses_the_folders_of_the_checkout(installed, root, tmp_path):
     """Beside the package of a checkout, `profiles` and `reports` are found, so that an edit acts at once."""
     environment = tmp_path / "venv"
-    _done(sys.executable, "-m", "venv", environment, cwd=tmp_path)
+    completed(sys.executable, "-m", "venv", environment, cwd=tmp_path)
     python = environment / installed.name / "python"
-    _done(python, "-m", "pip", "install", "--quiet", "--no-deps", "--editable", root, cwd=tmp_path)
+    completed(python, "-m", "pip", "install", "--quiet", "--no-deps", "--editable", root, cwd=tmp_path)
     script = (
         "from pvlvrt_compliance.resources import resource_folder;"
         "print(resource_folder('profiles'), resource_folder('reports'), sep='\\n')"
     )
-    found = _done(python, "-c", script, cwd=tmp_path).stdout.splitlines()
+    found = completed(python, "-c", script, cwd=tmp_path).stdout.splitlines()
     assert [Path(line) for line in found] == [root.resolve() / "profiles", root.resolve() / "reports"]
 
 

@@ -87,7 +87,7 @@ def test_an_id_overrides_once(write):
 def test_a_folder_of_the_users_comes_first(write, tmp_path, monkeypatch):
     """A name is looked for in $PVLVRT_PROFILES before the shipped profiles; a path is a path."""
     (tmp_path / "codes").mkdir()
-    write(name="codes/spain-q-curve", include='["../mine.toml"]')
+    write(name="codes/spain-q-curve", include='["mine"]')
     mine = write()
     shipped = find_profile("spain-q-curve")
     monkeypatch.setenv("PVLVRT_PROFILES", os.pathsep.join([str(tmp_path), str(tmp_path / "codes")]))

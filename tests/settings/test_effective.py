@@ -157,6 +157,17 @@ def test_typed_words_stay(hold):
     assert hold(None, {}, sag="9%").command(["pvlvrt-check", "--sag=9%"]) == ("pvlvrt-check", "--sag=9%")
 
 
+@pytest.mark.parametrize(
+    "how",
+    [["--jobs", "4"], ["--jobs=4"], ["--settle-once"], ["--no-settle-once"], ["--settle-once", "--jobs", "4"]],
+    ids=" ".join,
+)
+def test_how_a_run_is_made_is_no_part_of_the_command(hold, how):
+    """Options by which the results are the same go with their values; a flag has none, so that what follows stays."""
+    typed = ["pvlvrt-check", *how, "--sag", "9%"]
+    assert hold(None, {}, sag="9%").command(typed) == ("pvlvrt-check", "--sag", "9%")
+
+
 def test_provenance(hold):
     """A run keeps its file by name and digest, and each value with where it comes from."""
     kept = hold("scr = 1\n", {"PVLVRT_SAG": "9%"}, xr=3.0).provenance

@@ -13,7 +13,7 @@ from pvlvrt_compliance.settings.telling import _each
 
 def test_every_option_is_a_setting_by_its_name():
     """Key and variable follow from the option alone, and no two are the same; what is meant for one call is none."""
-    assert {s.field for s in SETTINGS} == set(OPTIONS) - {"list_only", "list_json", "config", "isolated"}
+    assert {s.field for s in SETTINGS} == set(OPTIONS) - {"list_only", "list_json", "config", "isolated", "debug"}
     for setting in SETTINGS:
         assert setting.kind in (str, float, bool, list[str])
         assert setting.key == OPTIONS[setting.field].names[0][2:].replace("-", "_")

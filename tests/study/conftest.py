@@ -1,8 +1,9 @@
-"""The paper's three sags, judged for any controller; what is simulated."""
+"""The paper's three sags, judged for any controller; what is simulated; a folder that a run has been put in."""
 
 from functools import partial
 
 import pytest
+import small_runs
 
 from pvlvrt_compliance.profile import load_profile
 from pvlvrt_compliance.scenario.sag import Sag
@@ -29,6 +30,13 @@ def runs(monkeypatch):
 
     monkeypatch.setattr(simulation, "simulate", simulate)
     return seen
+
+
+@pytest.fixture
+def begun(tmp_path):
+    """Output folder with a first run, an interrupted one, and foreign files."""
+    small_runs.begin(tmp_path / "out")
+    return tmp_path / "out"
 
 
 @pytest.fixture(scope="session")

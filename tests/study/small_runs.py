@@ -83,6 +83,19 @@ def ids(folder: Path) -> dict[str, str]:
     return found
 
 
+def names_in(folder: Path) -> set[str]:
+    """All files, with their folders."""
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+
+
+def assert_whole(folder: Path, name: str) -> None:
+    """All files of a run, and of it alone."""
+    assert ids(folder) == dict.fromkeys((RESULTS, JUNIT, REPORT), results_of(name).run_id)
+    for test in json.loads((folder / RESULTS).read_text("utf-8"))["tests"]:
+        assert (folder / test["waveforms"]).read_text() == name
+        assert (folder / test["waveforms"]).with_suffix(".dat").read_text() == name
+
+
 def _killed_at(step: int) -> None:
     """Have this process killed before its `step`-th change of a folder from here on."""
     steps = itertools.count()

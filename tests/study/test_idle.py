@@ -4,7 +4,7 @@ import pytest
 
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.parameters import parameter_names
-from pvlvrt_compliance.study.idle import NEEDS, OF_TESTS
+from pvlvrt_compliance.study.idle import NEEDS, OF_TESTS, idle_in_files
 from pvlvrt_compliance.study.job import Asked, make_job
 
 IEC = "iec61400-21"
@@ -93,6 +93,27 @@ def test_a_parameter_of_a_controller_of_ones_own(given):
 def test_a_controller_of_ones_own_has_its_own_parameters():
     """What is called as one of the bundled controller's is none, and nothing is said of it."""
     assert told("controller.pll_damping=3", **OWN) == []
+
+
+@pytest.mark.parametrize(
+    "given", [{}, {"settings": ("controller.sogi_gain=1",)}, OWN, OWN | {"settings": ("controller.hold=once",)}]
+)
+def test_an_option_on_the_parameters_of_a_controller_of_ones_own(given):
+    """Without one of them it does nothing, and names of the host are none of them."""
+    words = "allow_out_of_range does nothing here: it needs a parameter of a controller of your own"
+    (said,) = told(
+        *given.get("settings", ()), **{"allow_out_of_range": True} | {k: given[k] for k in given if k != "settings"}
+    )
+    assert said == f"{words} (settings controller.NAME=VALUE)"
+    assert told("controller.gain=1", allow_out_of_range=True, **OWN) == []
+
+
+def test_waveforms_as_csv_where_none_is_kept():
+    """What is kept is written so, and only what is."""
+    (said,) = idle_in_files(csv=True, keeps_waveforms=False, spell=str)
+    assert said == "csv does nothing here: it needs waveforms that are kept (waveforms all or failed)"
+    assert not [*idle_in_files(csv=True, keeps_waveforms=True, spell=str)]
+    assert not [*idle_in_files(csv=False, keeps_waveforms=False, spell=str)]
 
 
 def test_the_table_is_whole():

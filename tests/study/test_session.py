@@ -128,7 +128,7 @@ def test_a_name_of_no_function(runs, name):
 class Endless:
     """A simulator that never comes to an end by itself."""
 
-    notes = ()
+    notes, is_in_process = (), False
 
     def __init__(self):
         self.stopped = threading.Event()

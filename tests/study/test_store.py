@@ -1,6 +1,5 @@
 """The files in an output folder are those of one run, whatever happens to the next."""
 
-import errno
 import itertools
 import json
 import os
@@ -13,15 +12,9 @@ import small_runs
 
 from pvlvrt_compliance.errors import OutputError, UsageError
 from pvlvrt_compliance.results.files import ON_REQUEST
-from pvlvrt_compliance.study import store
 from pvlvrt_compliance.study.store import JUNIT, REPORT, RESULTS, OutputFolder
 
 ID = {name: small_runs.results_of(name).run_id for name in ("first", "second", "third", "earlier")}
-
-
-def names_in(folder):
-    """All files, with their folders."""
-    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
 
 
 def files_of(name):
@@ -35,27 +28,12 @@ def assert_no_mix(folder):
     found = small_runs.ids(folder)
     assert len(set(found.values())) <= 1
     if RESULTS in found:
-        assert_whole(folder, next(name for name in ID if ID[name] == found[RESULTS]))
-
-
-def assert_whole(folder, name):
-    """All files of a run, and of it alone."""
-    assert small_runs.ids(folder) == dict.fromkeys((RESULTS, JUNIT, REPORT), ID[name])
-    for test in json.loads((folder / RESULTS).read_text("utf-8"))["tests"]:
-        assert (folder / test["waveforms"]).read_text() == name
-        assert (folder / test["waveforms"]).with_suffix(".dat").read_text() == name
+        small_runs.assert_whole(folder, next(name for name in ID if ID[name] == found[RESULTS]))
 
 
 def assert_foreign_stay(folder):
     """What others have put there is as it was."""
     assert {(folder / name).read_text() for name in small_runs.FOREIGN} == {"mine"}
-
-
-@pytest.fixture
-def begun(tmp_path):
-    """Folder with the first run, an interrupted one, and foreign files."""
-    small_runs.begin(tmp_path / "out")
-    return tmp_path / "out"
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="Windows cannot kill a process at a step of its own")
@@ -71,12 +49,12 @@ def test_killed_at_every_step(tmp_path):
         OutputFolder(str(folder)).discard()
         run = next(name for name in ID if ID[name] == small_runs.ids(folder).get(RESULTS))
         ends.append(run)
-        assert_whole(folder, run)
-        assert names_in(folder) - set(small_runs.FOREIGN) == files_of(run) | (
+        small_runs.assert_whole(folder, run)
+        assert small_runs.names_in(folder) - set(small_runs.FOREIGN) == files_of(run) | (
             {f"interrupted/{name}" for name in files_of("earlier") - {JUNIT, REPORT}} if run == "first" else set()
         )
         small_runs.stage(folder, "third").finish()
-        assert names_in(folder) == files_of("third") | set(small_runs.FOREIGN)
+        assert small_runs.names_in(folder) == files_of("third") | set(small_runs.FOREIGN)
     # Before the journal stands there the run is taken back, from then on it is finished.
     assert [key for key, _ in itertools.groupby(ends)] == ["first", "second"]
 
@@ -124,11 +102,11 @@ def test_failure_at_every_step(tmp_path, error):
                 output.finish()
         assert not output.is_placed
         assert not output.is_stuck
-        assert_whole(folder, "first")
+        small_runs.assert_whole(folder, "first")
         assert_foreign_stay(folder)
         small_runs.keep(output, "second")
         assert small_runs.ids(folder / "interrupted")[RESULTS] == ID["second"]
-        assert_whole(folder, "first")
+        small_runs.assert_whole(folder, "first")
         assert not list(folder.glob(".unfinished*"))
 
 
@@ -147,7 +125,7 @@ def test_failure_that_cannot_be_taken_back(begun, monkeypatch, error):
     following = OutputFolder(str(begun))
     assert following.notes == [f"{begun}: a run that was stopped while its files were put in place is whole now"]
     following.discard()
-    assert_whole(begun, "second")
+    small_runs.assert_whole(begun, "second")
     assert_foreign_stay(begun)
 
 
@@ -162,7 +140,7 @@ def test_interruption_while_it_is_taken_back(begun, monkeypatch):
     output.discard()
     assert_no_mix(begun)
     OutputFolder(str(begun)).discard()
-    assert_whole(begun, "second")
+    small_runs.assert_whole(begun, "second")
     assert_foreign_stay(begun)
 
 
@@ -176,7 +154,7 @@ def test_one_run_at_a_time(begun):
         " wait for its end, or name another folder"
     )
     output.finish()
-    assert_whole(begun, "second")
+    small_runs.assert_whole(begun, "second")
 
 
 def test_a_second_run_by_another_name_of_the_folder(begun, tmp_path):
@@ -198,7 +176,7 @@ def test_leftovers_are_cleared(begun):
     assert [path for path in begun.glob(".unfinished-*")] == [output.staging]
     output.discard()
     assert not list(begun.glob(".unfinished*"))
-    assert_whole(begun, "first")
+    small_runs.assert_whole(begun, "first")
 
 
 @pytest.mark.parametrize("name", ["../outside.txt", "/tmp/outside.txt", "a/../../outside.txt", "C:outside", "a\\..\\b"])
@@ -212,7 +190,7 @@ def test_a_journal_moves_nothing_outside(begun, name):
     OutputFolder(str(begun)).discard()
     assert outside.read_text() == "mine"
     assert not staging.exists()
-    assert_whole(begun, "first")
+    small_runs.assert_whole(begun, "first")
 
 
 ENDLESS = ("[" * 100_000, "9" * 5000)
@@ -236,62 +214,7 @@ def test_results_of_another_that_cannot_be_read(begun, text):
     """What lies there under the name is no results, and the next run takes its place."""
     (begun / RESULTS).write_text(text)
     small_runs.stage(begun, "second").finish()
-    assert_whole(begun, "second")
-
-
-@pytest.mark.parametrize("name", [REPORT, JUNIT, RESULTS])
-def test_a_folder_in_the_way(tmp_path, name):
-    """A folder by the name of a report is told before anything is simulated, and stays."""
-    (tmp_path / name / "inside").mkdir(parents=True)
-    with pytest.raises(UsageError, match=f"a folder is in the way .*{name}"):
-        OutputFolder(str(tmp_path))
-    assert names_in(tmp_path) == set()
-    assert [path.name for path in tmp_path.iterdir()] == [name]
-
-
-def test_a_file_in_the_way_of_the_waveforms(tmp_path):
-    """So is a file where the waveforms go."""
-    (tmp_path / "waveforms").write_text("mine")
-    with pytest.raises(UsageError, match=r"no files can be put there .*waveforms"):
-        OutputFolder(str(tmp_path))
-    assert names_in(tmp_path) == {"waveforms"}
-
-
-def test_waveforms_on_another_file_system(begun, monkeypatch):
-    """No file takes its place there in one step: that is told before anything is simulated."""
-    monkeypatch.setattr(store, "_device_of", lambda place: len(place.parts))
-    with pytest.raises(UsageError, match=r"another file system .*waveforms"):
-        OutputFolder(str(begun))
-    assert_whole(begun, "first")
-
-
-def test_nothing_stays_of_a_run_that_is_discarded(tmp_path):
-    """Not even the folders that were made for it."""
-    small_runs.stage(tmp_path / "deep" / "out", "first").discard()
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_no_room_at_the_beginning(tmp_path, monkeypatch):
-    """A full disk is no wrong usage, and is told before anything is simulated."""
-
-    def fail(*_arguments, **_keywords):
-        raise OSError(errno.ENOSPC, "No space left on device")
-
-    monkeypatch.setattr(store.tempfile, "mkdtemp", fail)
-    with pytest.raises(OutputError) as error:
-        OutputFolder(str(tmp_path / "out"))
-    assert str(error.value) == f"output {tmp_path / 'out'}: cannot be written: No space left on device"
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_messages_name_what_was_typed(tmp_path):
-    """The folder is called as whoever asks writes it."""
-    (tmp_path / "file").write_text("mine")
-    for folder, said in (("", ": a folder is needed"), (str(tmp_path / "file"), f" {tmp_path / 'file'}: cannot be")):
-        for spelled, spell in (("output", str), ("--output", "--{}".format)):
-            with pytest.raises(UsageError) as error:
-                OutputFolder(folder, spell)
-            assert str(error.value).startswith(f"{spelled}{said}")
+    small_runs.assert_whole(begun, "second")
 
 
 @pytest.mark.parametrize("name", ON_REQUEST)
@@ -311,4 +234,4 @@ def test_a_pipe_in_place_of_the_results(tmp_path):
     """Nobody waits for what it may say: the run is put in its place."""
     os.mkfifo(tmp_path / RESULTS)
     small_runs.stage(tmp_path, "second").finish()
-    assert_whole(tmp_path, "second")
+    small_runs.assert_whole(tmp_path, "second")

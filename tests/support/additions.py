@@ -206,8 +206,15 @@ class FollowDoor(Door):
     written = "follow:GAIN"
     schemes = (_SCHEME,)
 
-    def __init__(self, spec: str, given: Mapping[str, Value], mapping: str | None = None) -> None:  # noqa: ARG002
-        checked_parameters(given, ())
+    def __init__(
+        self,
+        spec: str,
+        given: Mapping[str, Value],
+        mapping: str | None = None,  # noqa: ARG002
+        *,
+        allow_out_of_range: bool = False,
+    ) -> None:
+        checked_parameters(given, (), allow_out_of_range=allow_out_of_range)
         self._spec = spec
         try:
             self._gain = float(spec.removeprefix(_SCHEME))

@@ -17,6 +17,7 @@ from waiting import PATIENCE_S
 
 PROGRAM = "pvlvrt-check"
 LEFT_OUT = "..."
+DEBUG = "--debug"  # what is looked at is the process itself, to its end
 
 # What a terminal or a CI service sets, and the command would rightly follow.
 _SURROUNDINGS = (
@@ -109,7 +110,7 @@ class Shell:
             self.folder = self.folder / words[1]
             assert self.folder.is_dir(), command
             return Ended(0, "")
-        if words[0] != PROGRAM or "|" in command:
+        if words[0] != PROGRAM or "|" in command or DEBUG in words:
             return self._in_a_shell(command)
         if ">" not in words:
             return self._in_this_process(words[1:])

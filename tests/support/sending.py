@@ -59,7 +59,7 @@ hello["inputs"] = [{{"name": name, "description": TEXT}} for name in names] + [{
 hello["outputs"] = [{{"name": name, "description": TEXT}} for name in names]
 tell({{"error": WORST}} if deed == "make" else {{**hello, WORST: 1}} if deed == "hello" else hello)
 for line in sys.stdin:
-    tell({{"error": WORST}})
+    tell({{"ready": True}} if deed == "run" else {{"error": WORST}})
 """
 
 

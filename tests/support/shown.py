@@ -10,6 +10,11 @@ def panel_of(drawing: Drawing, title: str) -> Panel:
     return next(panel for panel in drawing.panels if panel.title == title)
 
 
+def names_of(drawing: Drawing) -> set[str]:
+    """Names of all lines, in all panels."""
+    return {line.name for panel in drawing.panels for line in panel.lines}
+
+
 def lines_of(drawing: Drawing, name: str) -> list[Line]:
     """All lines of a name, in all panels."""
     return [line for panel in drawing.panels for line in panel.lines if line.name == name]

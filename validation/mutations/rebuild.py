@@ -10,6 +10,7 @@ from pvlvrt_compliance.control import controller, precision, synchronisation
 from pvlvrt_compliance.kernel import in_single, kernel, plain
 from pvlvrt_compliance.plant import plant
 from pvlvrt_compliance.simulation import controlling, loop
+from pvlvrt_compliance.simulation.outcome import Outcome
 
 Loop = Callable[..., Any]
 
@@ -20,12 +21,18 @@ def rebuilt_loop(**replacements: Callable[..., Any]) -> Loop:
     A name is that of any function which the wiring (plant.py, synchronisation.py, controller.py) or the loop
     (controlling.py, loop.py) calls. Compiling takes seconds: keep what it gives.
     """
+    replacements.setdefault("ended", _for_good)  # its controller may have a state of its own: no run goes on
     modules = {module.__name__: module for module in (plant, synchronisation, controller, precision, controlling, loop)}
     unknown = {name for name in replacements if not any(hasattr(module, name) for module in modules.values())}
     assert not unknown, f"no block of the loop is named {unknown}"
     blocks = {name: block if hasattr(block, "py_func") else kernel(block) for name, block in replacements.items()}
     rewired = _with_globals(plain(loop.run), _rewired(modules, blocks))
     return numba.njit(rewired, nogil=True, error_model="numpy")
+
+
+def _for_good(status: int, period: int, plant_state: plant.PlantState, _x: Any, _m: complex, _k: int) -> Outcome:
+    """How a run ends, with nothing of the controller's state."""
+    return Outcome(status=status, period=period, plant=plant_state)
 
 
 def _rewired(modules: Mapping[str, Any], replaced: dict[str, Any]) -> dict[str, Any]:

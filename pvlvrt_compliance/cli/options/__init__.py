@@ -22,10 +22,10 @@ OPTIONS: dict[str, Option] = {
 }
 """All of them, in the order of the help."""
 
-_OF_THE_MOMENT = (*files.OPTIONS, "list_only", "list_json")
+_OF_THE_MOMENT = (*files.OPTIONS, "debug", "list_only", "list_json")
 """What nobody writes down: it is meant for one call."""
 
-_HOW = ("jobs", "cluster")
+_HOW = ("jobs", "cluster", "settle_once")
 """What says how a run is made, not what it finds (`study.job.HOW`)."""
 
 SETTINGS: tuple[Setting, ...] = tuple(

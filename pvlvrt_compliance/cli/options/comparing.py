@@ -4,7 +4,7 @@ from pvlvrt_compliance.cli.options import files, output, run, sag, selection, se
 from pvlvrt_compliance.cli.options.option import Option, text
 
 _OF_THE_RUNS = {
-    **{name: of for name, of in run.OPTIONS.items() if name != "controller"},
+    **{name: of for name, of in run.OPTIONS.items() if name not in ("controller", "debug")},
     **sag.OPTIONS,
     **setting.OPTIONS,
     **{name: selection.OPTIONS[name] for name in ("tests", "skip", "checks", "include_long")},

@@ -1,6 +1,6 @@
 """What is tested, and by which grid code."""
 
-from pvlvrt_compliance.cli.options.option import Option, text, texts
+from pvlvrt_compliance.cli.options.option import Option, flag, text, texts
 
 OPTIONS: dict[str, Option] = {
     "profiles": texts(
@@ -17,5 +17,10 @@ OPTIONS: dict[str, Option] = {
     ),
     "mapping": text(
         "--mapping", "FILE", "Ties its ports to the plant. Default: NAME.mapping.toml beside it, and by name."
+    ),
+    "debug": flag(
+        "--debug",
+        help="Run your controller in this process, one test after the other and without limits: for breakpoint(), gdb,"
+        " gcov and sanitisers.",
     ),
 }

@@ -1,6 +1,6 @@
 """Grid, weather and parameters of every test."""
 
-from pvlvrt_compliance.cli.options.option import Option, number, text, texts
+from pvlvrt_compliance.cli.options.option import Option, flag, number, text, texts
 
 _PANEL = "Grid, weather, parameters"
 
@@ -23,5 +23,11 @@ OPTIONS: dict[str, Option] = {
     ),
     "settings": texts(
         "--set", "NAME=VALUE", "A parameter, repeatable: --set controller.pr_integral_gain=0.2", _PANEL, "parameters"
+    ),
+    "allow_out_of_range": flag(
+        "--allow-out-of-range",
+        help="Let parameters of a controller of your own be out of the range that it states; reports name each."
+        " Example: --set controller.H=0 --allow-out-of-range",
+        panel=_PANEL,
     ),
 }

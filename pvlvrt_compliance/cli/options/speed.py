@@ -1,6 +1,6 @@
 """What makes a run faster and changes no verdict."""
 
-from pvlvrt_compliance.cli.options.option import Option, text
+from pvlvrt_compliance.cli.options.option import Option, flag, text
 
 _PANEL = "Speed"
 
@@ -25,4 +25,10 @@ OPTIONS: dict[str, Option] = {
         _PANEL,
     ),
     "reuse_size": text("--reuse-size", "SIZE", "What they may take, 2GB or 500MB. Default 10GB.", _PANEL),
+    "settle_once": flag(
+        "--settle-once",
+        help="Simulate the settling once for all tests that start alike: --profile all --settle-once. The records stay"
+        " the same to the bit; where a controller does not allow it, that is said.",
+        panel=_PANEL,
+    ),
 }

@@ -2,19 +2,17 @@
 
 import ctypes
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Any
 
 from pvlvrt_compliance.controllers.description import Value
 from pvlvrt_compliance.controllers.door import DoorError
-from pvlvrt_compliance.controllers.fmu.model import FmuModel, FmuParameter, Variable, fmi_library
-from pvlvrt_compliance.controllers.mapping.ties import RawPort
+from pvlvrt_compliance.controllers.fmu.binary import why_not
+from pvlvrt_compliance.controllers.fmu.model import FmuModel, FmuParameter, fmi_library
+from pvlvrt_compliance.controllers.fmu.ports import Ports
 from pvlvrt_compliance.controllers.notes import note_once
-from pvlvrt_compliance.simulation.door.blocks import ITEM_SIZES, block_memory
+from pvlvrt_compliance.simulation.door.ending import keep
 from pvlvrt_compliance.simulation.door.native_call import address_of
 
 OK, WARNING, DISCARD, ERROR, FATAL, PENDING, TERMINATED = range(7)
@@ -33,27 +31,11 @@ _NUMBERS: Mapping[str, Any] = {
     "Int32": ctypes.c_int32,
     "UInt32": ctypes.c_uint32,
 }
+_OF_FMI_3 = ("InstantiateCoSimulation", "instantiationToken")
 _LOG_LINES = 6
 _TERMINATED_KIND = 3  # fmi2Terminated
 
 Call = tuple[Callable[..., int], tuple[Any, ...]]
-
-
-class Ports(NamedTuple):
-    """Variables of an FMU in a block, one after another, those of a type together."""
-
-    variables: tuple[Variable, ...]
-    raw: tuple[RawPort, ...]
-    memory: NDArray[np.uint8]
-
-
-def laid_out(variables: Sequence[Variable]) -> Ports:
-    """Give variables, the largest types first, their places in a block."""
-    raw, byte = [], 0
-    for v in variables:
-        raw.append(RawPort(v.name, v.unit, v.width, byte, v.type.kind, v.description))
-        byte += v.width * ITEM_SIZES[v.type.kind]
-    return Ports(tuple(variables), tuple(raw), block_memory(byte))
 
 
 class Fmu:
@@ -70,9 +52,10 @@ class Fmu:
     def __init__(self, model: FmuModel, folder: Path) -> None:
         self._log: deque[str] = deque(maxlen=_LOG_LINES)
         self.notes: list[str] = []
+        self.steps = 0  # that have been asked of it
         self._status, self._why = OK, ""
-        self._version = model.version
-        self._prefix = f"fmi{model.version}"
+        self.version = model.version
+        self._prefix, self._token = f"fmi{model.version}", model.token
         library = fmi_library()
         self._fmi = library.fmi2 if model.version == "2" else library.fmi3
         kind = library.fmi2.FMU2Slave if model.version == "2" else library.fmi3.FMU3Slave
@@ -84,7 +67,7 @@ class Fmu:
                 unzipDirectory=str(folder),
             )
         except Exception as error:
-            raise DoorError(f"its binary cannot be loaded: {error}") from None
+            raise DoorError(f"its binary cannot be loaded: {why_not(error, folder / model.binary, kind)}") from None
         self._boolean = ctypes.c_int if model.version == "2" else ctypes.c_bool
         self._alive: list[Any] = []
         self._names: dict[int, str] = {}
@@ -101,7 +84,7 @@ class Fmu:
             self._instantiate()
             for parameter, value in parameters:
                 self._set(parameter, value)
-            if self._version == "2":
+            if self.version == "2":
                 self._fmu.setupExperiment(startTime=0.0)
             self._fmu.enterInitializationMode()
             self._run(self.getting(inputs))
@@ -113,18 +96,21 @@ class Fmu:
         """Function that takes it from one sample to the next: inputs in, a step, outputs out; 0 when all is well."""
         time = ctypes.c_double()
         calls = (*self.setting(inputs), (self._do_step(time, sample_time_s), ()), *self.getting(outputs))
-        count = 0
 
         def advance(_argument: Any) -> int:
-            nonlocal count
-            time.value = count * sample_time_s
-            count += 1
-            for function, arguments in calls:
-                if status := function(*arguments):
-                    if status != WARNING:
-                        self._ended(function, status)
-                        return 1
-                    self._warned(function)
+            time.value = self.steps * sample_time_s
+            self.steps += 1
+            try:
+                for function, arguments in calls:
+                    if status := function(*arguments):
+                        if status != WARNING:
+                            self._ended(function, status)
+                            return 1
+                        self._warned(function)
+            except BaseException as error:  # a signal, where this is the process of the command
+                keep(error)
+                self._why = repr(error)
+                return 1
             return 0
 
         return advance
@@ -136,6 +122,33 @@ class Fmu:
     def getting(self, ports: Ports) -> tuple[Call, ...]:
         """Calls that take the numbers of a block from an FMU."""
         return self._calls("Get", ports)
+
+    def call(self, name: str, *arguments: tuple[Any, int | None]) -> None:
+        """Call a function of FMI with the instance and numbers, each with its type of C.
+
+        Raises
+        ------
+        DoorError
+            When it gives more than a warning, with what the FMU has logged; nothing is asked of it after that.
+        """
+        if self._status not in (OK, WARNING):
+            raise DoorError(f"{self._prefix}{name} may not be called any more: {self._why}")
+        function = self._bare(name, *(kind for kind, _ in arguments))
+        status = function(self._fmu.component, *(value for _, value in arguments))
+        if status not in (OK, WARNING):
+            self._status, self._why = status, self._gave(function, status)
+            raise DoorError(self.message())
+
+    @property
+    def log(self) -> tuple[str, ...]:
+        """What it has logged last."""
+        return tuple(self._log)
+
+    def go_on(self, steps: int, log: Iterable[str]) -> None:
+        """Count and tell on as one that has done so many steps, and has logged this."""
+        self.steps = steps
+        self._log.clear()
+        self._log.extend(log)
 
     def message(self) -> str:
         """Why its last step was not done, with what it has logged."""
@@ -151,7 +164,24 @@ class Fmu:
         getattr(self._fmu.dll, f"{self._prefix}FreeInstance")(component)
 
     def _instantiate(self) -> None:
-        if self._version == "3":
+        try:
+            self._make_instance()
+        except Exception as error:
+            if not str(error).startswith("Failed to instantiate"):
+                raise
+            raise DoorError(self._no_instance) from None
+
+    @property
+    def _no_instance(self) -> str:
+        """What a binary that gives no instance most often means by it."""
+        called, attribute = ("Instantiate", "guid") if self.version == "2" else _OF_FMI_3
+        return (
+            f"{self._prefix}{called} gave no instance: most often the {attribute} of its modelDescription.xml,"
+            f" {self._token!r}, is not the one that its binary was built with"
+        )
+
+    def _make_instance(self) -> None:
+        if self.version == "3":
             self._fmu.instantiate(logMessage=self._noted_3)
             return
         callbacks = self._fmi.fmi2CallbackFunctions()
@@ -173,7 +203,7 @@ class Fmu:
     def _set(self, parameter: FmuParameter, value: Value) -> None:
         calls = parameter.type
         if calls == "Enumeration":
-            calls = "Integer" if self._version == "2" else "Int64"
+            calls = "Integer" if self.version == "2" else "Int64"
         getattr(self._fmu, f"set{calls}")([parameter.reference], [value])
 
     def _calls(self, verb: str, ports: Ports) -> tuple[Call, ...]:
@@ -185,7 +215,7 @@ class Fmu:
             width = sum(v.width for v, _ in places)
             number = _NUMBERS.get(name, self._boolean)
             values = (number * width).from_buffer(ports.memory, places[0][1].byte)
-            counted = (ctypes.c_size_t,) if self._version == "3" else ()
+            counted = (ctypes.c_size_t,) if self.version == "3" else ()
             self._alive += [references, values]
             function = self._bare(f"{verb}{name}", ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p, *counted)
             addresses = (ctypes.addressof(references), len(places), ctypes.addressof(values))
@@ -207,7 +237,7 @@ class Fmu:
 
     def _do_step(self, time: ctypes.c_double, step_s: float) -> Callable[[], int]:
         component, double = self._fmu.component, ctypes.c_double
-        if self._version == "2":
+        if self.version == "2":
             function = self._bare("DoStep", double, double, ctypes.c_int)
             return lambda: function(component, time, step_s, 1)
         function = self._bare("DoStep", double, double, ctypes.c_bool, *4 * [ctypes.c_void_p])
@@ -234,14 +264,14 @@ class Fmu:
 
     def _ended(self, function: Any, status: int) -> None:
         self._status = status
-        name = self._name(function)
-        asks = "the FMU asks for the end of the simulation"
-        if status == TERMINATED or (status == DISCARD and self._version == "2" and self._asks_for_the_end()):
-            self._why = asks
-        elif 0 <= status < len(_STATUS):
-            self._why = f"{name} gave {_STATUS[status]}"
+        if status == TERMINATED or (status == DISCARD and self.version == "2" and self._asks_for_the_end()):
+            self._why = "the FMU asks for the end of the simulation"
         else:
-            self._why = f"{name} gave {status}, which FMI does not have"
+            self._why = self._gave(function, status)
+
+    def _gave(self, function: Any, status: int) -> str:
+        known = 0 <= status < len(_STATUS)
+        return f"{self._name(function)} gave {_STATUS[status] if known else f'{status}, which FMI does not have'}"
 
     def _asks_for_the_end(self) -> bool:
         value = ctypes.c_int()

@@ -10,6 +10,7 @@ import numpy as np
 
 from pvlvrt_compliance.controllers.description import ParameterInfo, Value
 from pvlvrt_compliance.controllers.door import DoorError
+from pvlvrt_compliance.controllers.faults import RAISED, Faults
 from pvlvrt_compliance.controllers.fmu.archive import opened
 from pvlvrt_compliance.controllers.given_parameters import UNLIMITED, Range, range_of_type
 from pvlvrt_compliance.simulation.door.blocks import NUMBER_TYPES
@@ -44,6 +45,15 @@ _TYPES: Mapping[str, Mapping[str, NumberType]] = {
 }
 """Types that can be ports, by the first figure of FMI's version."""
 
+_OLDEST = "2"
+"""Of an older one the types are alike, where it is only shown."""
+
+_CAN: Mapping[str, tuple[str, str]] = {
+    "2": ("canGetAndSetFMUstate", "canSerializeFMUstate"),
+    "3": ("canGetAndSetFMUState", "canSerializeFMUState"),
+}
+"""How an FMU says that its state can be had, and taken elsewhere, by the first figure of FMI's version."""
+
 _NO_PORTS: Mapping[str, type[np.number]] = {"Int64": np.int64, "UInt64": np.uint64, "Enumeration": np.int64}
 """Further types of numbers of FMI 3, of parameters only."""
 
@@ -71,21 +81,22 @@ class FmuParameter(NamedTuple):
 
 
 class FmuModel(NamedTuple):
-    """An FMU for co-simulation with a binary for this platform."""
+    """An FMU for co-simulation with a binary for this platform, unless it has been read in spite of faults."""
 
     version: str  # first figure of FMI's version
     name: str
     identifier: str  # stem of its binary
-    binary: str  # its place in the archive
+    binary: str  # its place in the archive; empty: there is none for this platform
     token: str  # by which the binary knows that the description is its own
     sample_time_s: float | None  # by its description (s)
     inputs: tuple[Variable, ...]
     outputs: tuple[Variable, ...]
     parameters: tuple[FmuParameter, ...]
     notes: tuple[str, ...] = ()  # what is wrong with its description
+    stays: tuple[str, ...] = ()  # attributes that it lacks for its state to be taken elsewhere
 
 
-def read_model(file: Path) -> FmuModel:
+def read_model(file: Path, faults: Faults = RAISED) -> FmuModel:
     """Read the description of an FMU.
 
     Raises
@@ -95,20 +106,26 @@ def read_model(file: Path) -> FmuModel:
     """
     model, notes = _description(file)
     version = str(model.fmiVersion)[0]
-    _refuse_other_kinds(model, version)
-    binary = _binary(file, model.coSimulation.modelIdentifier, version)
+    with faults.told():
+        _refuse_other_kinds(model)
+    kind = model.coSimulation or model.modelExchange or model.scheduledExecution
+    identifier, binary = kind.modelIdentifier if kind is not None else "", ""
+    with faults.told():
+        binary = _binary(file, identifier, version)
     variables = [v for v in model.modelVariables if v.alias is None]
+    types = _TYPES.get(version, _TYPES[_OLDEST])
     return FmuModel(
         version=version,
         name=" ".join(filter(None, (model.modelName, model.version))),
-        identifier=model.coSimulation.modelIdentifier,
+        identifier=identifier,
         binary=binary,
-        token=model.guid,
+        token=model.guid or "",
         sample_time_s=_sample_time_s(model, _clock_intervals(file)),
-        inputs=_ports(variables, "input", _TYPES[version]),
-        outputs=_ports(variables, "output", _TYPES[version]),
+        inputs=_ports(variables, "input", types),
+        outputs=_ports(variables, "output", types),
         parameters=tuple(_parameter(v, version) for v in variables if v.causality == "parameter" and _is_settable(v)),
         notes=notes,
+        stays=_stays(kind, version),
     )
 
 
@@ -143,12 +160,28 @@ def _description(file: Path) -> tuple[Any, tuple[str, ...]]:
     except (zipfile.BadZipFile, KeyError) as error:
         raise DoorError(f"{file.name} is not an FMU: {str(error).strip(chr(34))}") from None
     except Exception as error:
+        _refuse_other_versions(_version_in(file))
         raise DoorError(f"its modelDescription.xml cannot be used: {error}") from None
 
 
-def _refuse_other_kinds(model: Any, version: str) -> None:
-    if version not in _TYPES:
-        raise DoorError(f"it is an FMU of FMI {model.fmiVersion}; FMI 2 and FMI 3 can be used")
+def _version_in(file: Path) -> str:
+    """FMI's version by a description that cannot be used otherwise; empty where not even that can be read."""
+    from lxml import etree
+
+    try:
+        with opened(file) as archive, archive.open("modelDescription.xml") as stream:
+            return str(etree.parse(stream).getroot().get("fmiVersion") or "")
+    except (etree.XMLSyntaxError, DoorError):
+        return ""
+
+
+def _refuse_other_versions(version: str) -> None:
+    if version and version[0] not in _TYPES:
+        raise DoorError(f"it is an FMU of FMI {version}; FMI 2 and FMI 3 can be used")
+
+
+def _refuse_other_kinds(model: Any) -> None:
+    _refuse_other_versions(str(model.fmiVersion))
     if model.coSimulation is not None:
         return
     reasons = {
@@ -180,6 +213,12 @@ def _binary(file: Path, identifier: str, version: str) -> str:
     raise DoorError(f"it has no binary for {here}; it has: {', '.join(platforms) or 'none at all'}")
 
 
+def _stays(kind: Any, version: str) -> tuple[str, ...]:
+    """Attributes by which a state could be taken elsewhere that are not true; the library spells them as FMI 2."""
+    own = zip(_CAN.get(version, ()), _CAN["2"], strict=False)
+    return tuple(name for name, of_library in own if not getattr(kind, of_library, False))
+
+
 def _clock_intervals(file: Path) -> list[float]:
     """Intervals (s) of FMI 3's clocks, which the library does not read."""
     from lxml import etree
@@ -194,7 +233,7 @@ def _sample_time_s(model: Any, clocks: Sequence[float]) -> float | None:
     if len(set(clocks)) == 1:
         return clocks[0]
     proposed = model.defaultExperiment.stepSize if model.defaultExperiment is not None else None
-    found = proposed if proposed is not None else model.coSimulation.fixedInternalStepSize
+    found = proposed if proposed is not None else getattr(model.coSimulation, "fixedInternalStepSize", None)
     return None if found is None else float(found)
 
 
@@ -239,8 +278,9 @@ def _parameter(variable: Any, version: str) -> FmuParameter:
 
 
 def _range_of(kind: str, version: str) -> Range:
-    if kind in _TYPES[version]:
-        return range_of_type(NUMBER_TYPES[_TYPES[version][kind].kind])
+    types = _TYPES.get(version, _TYPES[_OLDEST])
+    if kind in types:
+        return range_of_type(NUMBER_TYPES[types[kind].kind])
     return range_of_type(_NO_PORTS[kind]) if kind in _NO_PORTS else UNLIMITED
 
 

@@ -49,6 +49,26 @@ def besides_of_archive(content: bytes, beside: Iterable[str]) -> str:
     return _elsewhere(found, beside) or _named("calls", found.functions, (_LOADING,))
 
 
+def further_missing(content: bytes, error: str) -> str:
+    """Functions that a library needs and nothing has, besides the one at which its loading has ended; in words.
+
+    Empty where it needs libraries other than the system's, which may have them.
+
+    Parameters
+    ----------
+    content : bytes
+        Of its file.
+    error : str
+        What the system has said.
+    """
+    found = imports_of(content)
+    if "undefined symbol" not in error or found is None or not all(map(_SYSTEM.fullmatch, found.libraries)):
+        return ""
+    named = set(re.findall(r"\w+", error))
+    missing = sorted(name for name in found.from_anywhere - named if not _is_of_the_system(name))
+    return f"; likewise missing: {', '.join(missing)}" if missing else ""
+
+
 def _elsewhere(found: Imports, beside: Iterable[str]) -> str:
     own = set(beside)
     others = [name for name in found.libraries if not _SYSTEM.fullmatch(name) and name not in own]

@@ -7,14 +7,16 @@ from typing import Any, NamedTuple
 
 from pvlvrt_compliance.controllers.description import Description, Value
 from pvlvrt_compliance.controllers.door import Door, DoorCall, DoorError
+from pvlvrt_compliance.controllers.faults import RAISED, Faults
 from pvlvrt_compliance.controllers.library.file import SUFFIXES, Library
 from pvlvrt_compliance.controllers.library.info import LibraryInfo, PortInfo, info_of, settings_of
 from pvlvrt_compliance.controllers.library.instance import LibraryInstance, Snapshot
 from pvlvrt_compliance.controllers.library.layout import Layout, ModelInfo, layout_of
+from pvlvrt_compliance.controllers.mapping.as_far import both_sides, loaded
+from pvlvrt_compliance.controllers.mapping.bare import both_bare
 from pvlvrt_compliance.controllers.mapping.commands import check_commands
 from pvlvrt_compliance.controllers.mapping.constants import set_constants
-from pvlvrt_compliance.controllers.mapping.file import load_mapping, mapping_path
-from pvlvrt_compliance.controllers.mapping.sides import map_inputs, map_outputs
+from pvlvrt_compliance.controllers.mapping.file import mapping_path
 from pvlvrt_compliance.controllers.mapping.ties import Mapped, RawPort
 from pvlvrt_compliance.simulation.door.blocks import Block, Element
 from pvlvrt_compliance.simulation.door.exchange import SIGNALS
@@ -46,6 +48,8 @@ class LibraryDoor(Door):
         Parameters that the user has set.
     mapping : str, optional
         Mapping file; by default ``<stem>.mapping.toml`` beside the library, if there is one.
+    allow_out_of_range : bool
+        Whether a parameter may be out of the range that it states for it.
 
     Raises
     ------
@@ -55,16 +59,28 @@ class LibraryDoor(Door):
 
     written = "libctrl.so (a shared library)"
     suffixes = SUFFIXES
+    keeps_faults = True
 
-    def __init__(self, spec: str, given: Mapping[str, Value], mapping: str | None = None) -> None:
+    def __init__(
+        self,
+        spec: str,
+        given: Mapping[str, Value],
+        mapping: str | None = None,
+        faults: Faults = RAISED,
+        *,
+        allow_out_of_range: bool = False,
+    ) -> None:
         file = Path(spec)
-        self._library = Library(file)
-        self._info = _info(self._library, file)
-        self._functions = _functions(self._library, file)
-        self._settings = settings_of(self._info.parameters, given)
+        self._faults = faults
+        self._library = Library(file, faults)
+        self._info = _info(self._library, file, faults)
+        self._functions = _functions(self._library, file, faults)
+        self._unusable = tuple(faults.texts)
+        self._settings = _settings(self._info, given, faults, allow_out_of_range)
         self._mapping_file = mapping_path(spec, mapping)
-        self._mapping = load_mapping(self._mapping_file)
+        self._mapping = loaded(self._mapping_file, faults)
         self._instance: LibraryInstance | None = None
+        self._has_begun = False
         self._said = ""
         self._alive: tuple[Any, ...] = ()
 
@@ -93,10 +109,14 @@ class LibraryDoor(Door):
 
     def open(self, nominal: Nominal) -> DoorCall:
         """Allocate an instance; the library's own first calls follow when its inputs are there."""
+        if self._unusable:
+            raise DoorError(self._unusable[0])
         instance = LibraryInstance(self._info, self._settings)
+        self._has_begun = False
         self._instance = instance
         inputs, outputs = self._mapped(instance.inputs_at, instance.outputs_at, nominal)
-        check_commands(outputs)
+        if not self._faults.kept:
+            check_commands(outputs)
         set_constants(instance.memory, inputs.constants)
         time = Element(SIGNALS.index("time_s"), instance.time_at)
         first, note = (FUNCTION(guarded(do, self._say)) for do in (self._begin, instance.note))
@@ -148,8 +168,18 @@ class LibraryDoor(Door):
         """
         instance = self._open_instance()
         instance.restore(snapshot)
+        if not self._has_begun:  # what it sets up besides its states
+            self._begin()
+            instance.call(self._functions.initialize, "Model_Initialize")
+            instance.restore(snapshot)
         if self._functions.first_call is not None:
             instance.call(self._functions.first_call, "Model_FirstCall")
+
+    def resume(self, nominal: Nominal, snapshot: Any) -> DoorCall:
+        """Allocate an instance, have it begin, and put the snapshot in its place."""
+        opened = self.open(nominal)
+        self.restore(snapshot)
+        return opened
 
     def _open_instance(self) -> LibraryInstance:
         if self._instance is None:
@@ -158,11 +188,14 @@ class LibraryDoor(Door):
 
     def _mapped(self, inputs_at: int, outputs_at: int, nominal: Nominal) -> tuple[Mapped, Mapped]:
         inputs, outputs = _raw_ports(self._info.inputs, inputs_at), _raw_ports(self._info.outputs, outputs_at)
-        return map_inputs(inputs, self._mapping, nominal), map_outputs(outputs, self._mapping, nominal)
+        if self.bare:
+            return both_bare(inputs, outputs)
+        return both_sides(inputs, outputs, self._mapping, nominal, self._faults)
 
     def _begin(self) -> None:
         """First calls of an instance: Model_FirstCall, if it is there, and Model_CheckParameters."""
         instance = self._open_instance()
+        self._has_begun = True
         if self._functions.first_call is not None:
             instance.call(self._functions.first_call, "Model_FirstCall")
         before = instance.parameters()
@@ -178,22 +211,30 @@ class LibraryDoor(Door):
 DOOR = LibraryDoor
 
 
-def _info(library: Library, file: Path) -> LibraryInfo:
+def _info(library: Library, file: Path, faults: Faults) -> LibraryInfo:
     get_info = library.function("Model_GetInfo", ctypes.POINTER(ModelInfo))
     if get_info is None:
         raise DoorError(f"{file.name} has no function Model_GetInfo: it is not made for the IEEE/CIGRE DLL interface")
     found = get_info()
     if not found:
         raise DoorError(f"Model_GetInfo of {file.name} gives nothing")
-    return info_of(found.contents)
+    return info_of(found.contents, faults)
 
 
-def _functions(library: Library, file: Path) -> _Functions:
+def _settings(
+    info: LibraryInfo, given: Mapping[str, Value], faults: Faults, allow_out_of_range: bool
+) -> dict[str, Value]:
+    with faults.told():
+        return settings_of(info.parameters, given, allow_out_of_range)
+    return settings_of(info.parameters, {})
+
+
+def _functions(library: Library, file: Path, faults: Faults) -> _Functions:
     names = (*_DEMANDED, "Model_FirstCall")
     found = [library.function(name, arguments=(ctypes.c_void_p,)) for name in names]
     missing = [name for name, function in zip(_DEMANDED, found, strict=False) if function is None]
     if missing:
-        raise DoorError(f"{file.name} has no function {' and '.join(missing)}")
+        faults.tell(f"{file.name} has no function {' and '.join(missing)}")
     return _Functions(*found)
 
 

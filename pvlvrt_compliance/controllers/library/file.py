@@ -12,8 +12,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from pvlvrt_compliance.controllers.debugging import is_debugged
 from pvlvrt_compliance.controllers.door import DoorError
-from pvlvrt_compliance.controllers.library.besides import besides_of_library
+from pvlvrt_compliance.controllers.faults import RAISED, Faults
+from pvlvrt_compliance.controllers.file import content_of
+from pvlvrt_compliance.controllers.library.besides import besides_of_library, further_missing
 
 SUFFIXES = (".so", ".dylib", ".dll")
 """Names of shared libraries end so, whatever the system."""
@@ -27,6 +30,7 @@ _MACHINES = {
 }
 _THIS_MACHINE = {"x86_64": "x86-64", "amd64": "x86-64", "aarch64": "arm64", "arm64": "arm64", "riscv64": "RISC-V"}
 _SHARED_OBJECT = 3  # e_type of ELF
+_UNKNOWN = "its ports are not known, as they are asked for by Model_GetInfo, which cannot be called"
 
 
 class Library:
@@ -36,6 +40,9 @@ class Library:
     ----------
     file : Path
         The library.
+    faults : Faults
+        Where they are kept, one that needs functions which nothing has is loaded all the same: it can be asked what it
+        is, and must not be run.
 
     Raises
     ------
@@ -43,18 +50,18 @@ class Library:
         When there is no such file, or it cannot be loaded here, with the reason.
     """
 
-    def __init__(self, file: Path) -> None:
-        if not file.is_file():
-            raise DoorError(f"there is no file {file}")
-        content = file.read_bytes()
-        _check_format(file.name, content)
+    def __init__(self, file: Path, faults: Faults = RAISED) -> None:
+        content = content_of(file)
+        check_format(file.name, content)
         self.digest = hashlib.sha256(content).hexdigest()
         self._file = file
         self._folder = Path(tempfile.mkdtemp(prefix="pvlvrt-library-"))
         try:
-            self._functions = self._load(file)
+            self._functions = self._load(file, content, faults)
         finally:
-            if os.name == "posix":  # what is loaded stays loaded, and nothing stays behind if it crashes
+            # What is loaded stays loaded, and nothing stays behind if it crashes; a debugger and a sanitiser read the
+            # lines of the source from the file.
+            if os.name == "posix" and not is_debugged():
                 shutil.rmtree(self._folder, ignore_errors=True)
 
     def function(self, name: str, result: Any = ctypes.c_int32, arguments: tuple[Any, ...] = ()) -> Any:
@@ -66,13 +73,15 @@ class Library:
 
     def besides(self) -> str:
         """What decides what it does besides its file, in words (`besides_of_library`)."""
-        return besides_of_library(self._file.read_bytes())
+        return besides_of_library(content_of(self._file))
 
     def close(self) -> None:
-        """Remove the copy, as far as the system lets go of it; the process ends soon after."""
+        """Remove the copy, as far as the system lets go of it; the process ends soon after, or is debugged."""
+        if is_debugged():
+            return
         shutil.rmtree(self._folder, ignore_errors=True)
 
-    def _load(self, file: Path) -> ctypes.CDLL:
+    def _load(self, file: Path, content: bytes, faults: Faults) -> ctypes.CDLL:
         copy = self._folder / file.name
         shutil.copyfile(file, copy)
         with suppress(OSError):
@@ -80,11 +89,36 @@ class Library:
         try:
             return ctypes.CDLL(str(file.resolve()))  # it may need libraries that lie beside it
         except OSError as error:
-            raise DoorError(f"{file} cannot be loaded: {error}") from None
+            faults.tell(f"{file} cannot be loaded: {error}{further_missing(content, str(error))}")
+        return _loaded_without(copy)
 
 
-def _check_format(name: str, content: bytes) -> None:
+def _loaded_without(file: Path) -> ctypes.CDLL:
+    """A library, loaded without the functions that it needs and nothing has, which ends the process where it calls one.
+
+    Raises
+    ------
+    DoorError
+        Where the system does not know of that, or the library does not allow it.
+    """
+    if sys.platform == "win32":
+        raise DoorError(_UNKNOWN)
+    open_library = ctypes.CDLL(None).dlopen
+    open_library.restype, open_library.argtypes = ctypes.c_void_p, (ctypes.c_char_p, ctypes.c_int)
+    handle = open_library(os.fsencode(file), os.RTLD_LAZY)
+    if not handle:
+        raise DoorError(_UNKNOWN)
+    return ctypes.CDLL(str(file), handle=handle)
+
+
+def check_format(name: str, content: bytes) -> None:
     """Refuse a file that is no shared library of this system and machine.
+
+    Parameters
+    ----------
+    name : str
+        Of the file, for the message.
+    content : bytes
 
     Raises
     ------

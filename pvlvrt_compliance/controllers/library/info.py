@@ -1,13 +1,14 @@
 """What a controller in C says of itself, checked, in plain Python: ports, parameters, sample time, states."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from pvlvrt_compliance.controllers.description import ParameterInfo, Value
 from pvlvrt_compliance.controllers.door import DoorError
-from pvlvrt_compliance.controllers.given_parameters import checked_parameters, range_of_type
+from pvlvrt_compliance.controllers.faults import RAISED, Faults
+from pvlvrt_compliance.controllers.given_parameters import checked_parameters, code_of, range_of_type
 from pvlvrt_compliance.controllers.library.layout import C_STRING, TYPES, Member, ModelInfo
 from pvlvrt_compliance.simulation.door import ports
 from pvlvrt_compliance.simulation.door.blocks import NUMBER_TYPES
@@ -45,6 +46,9 @@ class LibraryParameter(NamedTuple):
         return ParameterInfo(self.name, self.default, self.unit, self.description, self.minimum, self.maximum)
 
 
+One = TypeVar("One", PortInfo, LibraryParameter)
+
+
 class LibraryInfo(NamedTuple):
     """A controller in C."""
 
@@ -63,7 +67,7 @@ class LibraryInfo(NamedTuple):
         return self.int_states + self.float_states + self.double_states > 0
 
 
-def info_of(model: Any) -> LibraryInfo:
+def info_of(model: Any, faults: Faults = RAISED) -> LibraryInfo:
     """Read what `Model_GetInfo` points to.
 
     Raises
@@ -73,16 +77,17 @@ def info_of(model: Any) -> LibraryInfo:
     """
     raw: Any = model
     if raw.EMT_RMS_Mode == RMS:
-        raise DoorError("the controller is for RMS simulation only (EMT_RMS_Mode 2); instantaneous values are needed")
+        faults.tell("the controller is for RMS simulation only (EMT_RMS_Mode 2); instantaneous values are needed")
     states = [raw.NumIntStates, raw.NumFloatStates, raw.NumDoubleStates]
     if not all(0 <= n <= _MOST_STATES for n in states):
-        raise DoorError(f"the controller announces {', '.join(map(str, states))} states (int, float, double)")
+        faults.tell(f"the controller announces {', '.join(map(str, states))} states (int, float, double)")
+        states = [0, 0, 0]
     return LibraryInfo(
         name=" ".join(part for part in (text_of(raw.ModelName), text_of(raw.ModelVersion)) if part) or "unnamed",
         sample_time_s=_sample_time_s(raw),
-        inputs=_ports(raw.NumInputPorts, raw.InputPortsInfo, "input"),
-        outputs=_ports(raw.NumOutputPorts, raw.OutputPortsInfo, "output"),
-        parameters=_parameters(raw),
+        inputs=_ports(raw.NumInputPorts, raw.InputPortsInfo, "input", faults),
+        outputs=_ports(raw.NumOutputPorts, raw.OutputPortsInfo, "output", faults),
+        parameters=_parameters(raw, faults),
         int_states=states[0],
         float_states=states[1],
         double_states=states[2],
@@ -97,7 +102,9 @@ def text_of(found: bytes | None) -> str:
         return (found or b"").decode("latin-1").strip()
 
 
-def settings_of(parameters: Sequence[LibraryParameter], given: Mapping[str, Value]) -> dict[str, Value]:
+def settings_of(
+    parameters: Sequence[LibraryParameter], given: Mapping[str, Value], allow_out_of_range: bool = False
+) -> dict[str, Value]:
     """Value of every parameter: the one that is given, checked, or the library's default.
 
     Raises
@@ -106,15 +113,11 @@ def settings_of(parameters: Sequence[LibraryParameter], given: Mapping[str, Valu
         When one is unknown, of another type, or out of range.
     """
     kinds = {p.name: p.kind for p in parameters}
-    numbers = {name: _code_of(value) if kinds.get(name) == ports.CHAR else value for name, value in given.items()}
+    numbers = {name: code_of(value) if kinds.get(name) == ports.CHAR else value for name, value in given.items()}
     holds = {name: range_of_type(NUMBER_TYPES[kind]) for name, kind in kinds.items() if kind != C_STRING}
-    checked = checked_parameters(numbers, (p.public() for p in parameters), holds)
+    known = (p.public() for p in parameters)
+    checked = checked_parameters(numbers, known, holds, allow_out_of_range=allow_out_of_range)
     return {p.name: checked.get(p.name, p.default) for p in parameters}
-
-
-def _code_of(value: Value) -> Value:
-    """The whole number that a single character of type char is."""
-    return ord(value) if isinstance(value, str) and len(value) == 1 and value.isascii() else value
 
 
 def _sample_time_s(raw: ModelInfo) -> float:
@@ -125,11 +128,20 @@ def _sample_time_s(raw: ModelInfo) -> float:
     return found
 
 
-def _ports(count: int, found: Any, what: str) -> tuple[PortInfo, ...]:
-    _check_count(count, found, f"{what} ports")
-    made = tuple(_port(found[k], f"{what} port {k + 1}") for k in range(count))
-    _check_names([port.name for port in made], f"{what} ports")
-    return made
+def _ports(count: int, found: Any, what: str, faults: Faults) -> tuple[PortInfo, ...]:
+    return _listed(count, found, f"{what} ports", lambda raw, k: _port(raw, f"{what} port {k + 1}"), faults)
+
+
+def _listed(count: int, found: Any, what: str, read: Callable[[Any, int], One], faults: Faults) -> tuple[One, ...]:
+    """A list of the library; where faults are kept, those of its members that make sense."""
+    made: list[One] = []
+    with faults.told():
+        _check_count(count, found, what)
+        for k in range(count):
+            with faults.told():
+                made.append(read(found[k], k))
+        _check_names([one.name for one in made], what)
+    return tuple(made)
 
 
 def _port(raw: Any, which: str) -> PortInfo:
@@ -141,14 +153,11 @@ def _port(raw: Any, which: str) -> PortInfo:
     return PortInfo(name, text_of(raw.Unit), text_of(raw.Description), Member(raw.DataType, raw.Width))
 
 
-def _parameters(raw: Any) -> tuple[LibraryParameter, ...]:
-    _check_count(raw.NumParameters, raw.ParametersInfo, "parameters")
-    made = tuple(_parameter(raw.ParametersInfo[k]) for k in range(raw.NumParameters))
-    _check_names([p.name for p in made], "parameters")
-    return made
+def _parameters(raw: Any, faults: Faults) -> tuple[LibraryParameter, ...]:
+    return _listed(raw.NumParameters, raw.ParametersInfo, "parameters", _parameter, faults)
 
 
-def _parameter(raw: Any) -> LibraryParameter:
+def _parameter(raw: Any, _k: int) -> LibraryParameter:
     kind = raw.DataType
     if kind not in TYPES:
         raise DoorError(f"parameter {text_of(raw.Name)} is of type {kind}; types 1 to 10 are defined")

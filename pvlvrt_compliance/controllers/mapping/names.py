@@ -1,211 +1,275 @@
-"""Which plant signal or command a port means by its name alone."""
+"""Which plant signal or command a port means: by its name, unless its unit or its description contradicts that."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple
 
+from pvlvrt_compliance.controllers.mapping.described import Said, contradiction, said_in, support
+from pvlvrt_compliance.controllers.mapping.perhaps_a_switch import may_be_switch
+from pvlvrt_compliance.controllers.mapping.port_units import misfit, spelled
+from pvlvrt_compliance.controllers.mapping.quantities import (
+    PHASES,
+    Meaning,
+    Other,
+    in_phase,
+    phase_of,
+    quantity_of,
+)
+from pvlvrt_compliance.controllers.mapping.words import (
+    APPARENT,
+    EXACT,
+    INPUT_NAMES,
+    OF_TWO_PHASES,
+    OUTPUT_NAMES,
+    PAIRS,
+    TOLD_NAMES,
+    WITH_SIBLINGS,
+    WORKING,
+    Known,
+    Unclear,
+)
 from pvlvrt_compliance.simulation.door.exchange import COMMANDS, SIGNALS
-
-PHASES = "abc"
-
-QUANTITIES: Mapping[str, str] = {
-    "time_s": "time",
-    **dict.fromkeys(("u_a_v", "u_b_v", "u_c_v", "u_a_ref_v", "u_b_ref_v", "u_c_ref_v", "voltage_nominal_v"), "voltage"),
-    **dict.fromkeys(("u_d_ref_v", "u_q_ref_v"), "voltage"),
-    "angle_rad": "angle",
-    **dict.fromkeys(("i_a_a", "i_b_a", "i_c_a"), "current"),
-    "v_dc_v": "dc_voltage",
-    **dict.fromkeys(("i_dc_a", "i_pv_a"), "dc_current"),
-    **dict.fromkeys(("m_a", "m_b", "m_c"), "modulation"),
-    **dict.fromkeys(("p_set_w", "p_available_w"), "active_power"),
-    "v_dc_nominal_v": "dc_voltage",
-    "filter_inductance_h": "inductance",
-    "filter_resistance_ohm": "resistance",
-    "dc_link_capacitance_f": "capacitance",
-    "q_set_var": "reactive_power",
-    "frequency_nominal_hz": "frequency",
-    "apparent_power_nominal_va": "apparent_power",
-    "irradiance_w_m2": "irradiance",
-}
-"""Quantity of a signal or command, for its units; of those not named, a number without unit."""
 
 
 class Guess(NamedTuple):
-    """What a port's name means."""
+    """What a port means."""
 
     names: tuple[str, ...] = ()  # a signal or command for every element; empty: nothing is known
     note: str = ""  # why nothing is
     unit: str = ""  # that the name ends in
     inverted: bool = False  # whether it says the opposite of the command
+    candidates: tuple[str, ...] = ()  # what it could be, where that is not known
 
 
-_VOLTS, _AMPS, _M = ("u_{}_v", "i_{}_a", "m_{}")
-_U_REF = "u_{}_ref_v"
+class Hints(NamedTuple):
+    """What there is to go by besides a port's name."""
 
-# Stems that a phase's letter follows (Va, V_a_grid, vga), or that stand for all three (Vabc, vgabc).
-_GRID = ("", "g", "grid", "pcc", "poc", "poi", "s", "t", "ac", "ph", "phase", "ln", "net", "term")
-_INVERTER = ("", "g", "grid", "pcc", "inv", "l", "lf", "out", "o", "f", "conv", "vsc", "ac", "ph", "phase", "line", "s")
-_INPUT_STEMS = (
-    (_VOLTS, ("v", "u"), _GRID),
-    (_AMPS, ("i",), _INVERTER),
-    (_M, ("m",), ("", "od")),
-)
-_OUTPUT_STEMS = (
-    (_M, ("m",), ("", "od", "ref", "odulation", "cmd")),
-    (_U_REF, ("v", "u", "e"), ("ref", "inv", "conv", "cmd", "vsc", "star", "set")),
-    (_U_REF, ("e",), ("",)),
-)
+    unit: str = ""
+    description: str = ""
+    beside: Collection[str] = ()  # keys of the names of all ports of its side: see `key_of`
 
-_INPUT_WORDS = {
-    "time_s": ("time", "t", "simtime", "currtime", "currenttime", "tsim"),
-    "v_dc_v": ("vdc", "udc", "vdclink", "udclink", "vlink", "ulink", "vdcbus", "vbusdc", "edc", "dcvoltage", "vdcmeas"),
-    "i_dc_a": ("idc", "idcinv", "idclink", "dccurrent"),
-    "i_pv_a": ("ipv", "ipvarray", "iarray", "pvcurrent"),
-    "p_set_w": ("pset", "pref", "psetpoint", "pstar", "pcmd", "porder", "psp", "pdispatch"),
-    "q_set_var": ("qset", "qref", "qsetpoint", "qstar", "qcmd", "qorder", "qsp", "qdispatch"),
-    "frequency_nominal_hz": (
-        "fnom",
-        "fn",
-        "fnominal",
-        "freqnom",
-        "frequencynominal",
-        "fbase",
-        "f0",
-        "nominalfrequency",
-    ),
-    "apparent_power_nominal_va": ("snom", "sn", "sbase", "srated", "mvabase"),
-    "p_available_w": ("pavail", "pavailable", "pav", "availablepower", "pmpp", "pmax", "pprimary", "poweravailable"),
-    "v_dc_nominal_v": ("vdcnom", "vdcnominal", "vdcn", "vdcbase", "udcnom", "udcn"),
-    "filter_inductance_h": ("lf", "lfilter", "lfilt", "linv", "lchoke"),
-    "filter_resistance_ohm": ("rf", "rfilter", "rfilt", "rinv", "rchoke"),
-    "dc_link_capacitance_f": ("cdc", "cdclink", "clink"),
-    "irradiance_w_m2": ("irradiance", "ghi", "gpoa", "irr"),
-    "enabled": ("enabled", "enable", "en", "deblock", "release", "run"),
-    "connected": ("connected", "breaker", "breakerclosed", "cbclosed", "gridconnected"),
-}
 
-_SWITCH_WORDS = {
-    "trip": (
-        "tripcmd",
-        "tripcommand",
-        "triporder",
-        "tripsignal",
-        "tripcb",
-        "cbtrip",
-        "cbopen",
-        "opencb",
-        "breakertrip",
-    ),
-    "block": (
-        "blocked",
-        "blk",
-        "gateblock",
-        "blockgate",
-        "pulseblock",
-        "blockpulses",
-        "pwmblock",
-        "blockpwm",
-        "inhibit",
-    ),
-    "restart": ("restartcmd", "rearm"),
-}
-_WORKING = (
-    *("enable", "enabled", "en", "pwmenable", "enablepwm", "pwmen", "enpwm", "gateenable", "gateen", "pulseenable"),
-    *("deblock", "deblocked", "unblock", "gateson", "pwmon"),
-)
-"""Outputs that are 1 while the bridge works: the opposite of a block."""
+NO_HINTS = Hints()
+"""A name alone."""
 
-_FRAME_ENDS = ("ref", "cmd", "star", "set", "inv", "conv")
-_FRAME_WORDS = {
-    **{f"u_{axis}_ref_v": tuple(f"{u}{axis}{end}" for u in "uve" for end in _FRAME_ENDS) for axis in "dq"},
-    "angle_rad": ("angleref", "thetaref", "thetacmd", "anglecmd"),
-}
-"""Voltages in a frame, and its angle; an angle alone (`theta`) may be one that is only told."""
-
-_LINE_TO_LINE = "it looks like a line-to-line voltage, which is not offered; take the phase voltages"
-_AMBIGUOUS_INPUTS = {
-    **dict.fromkeys(
-        ("v", "u", "vg", "ug", "vgrid", "vac", "e", "ea", "eb", "ec"), "of which phase, and which voltage?"
-    ),
-    **dict.fromkeys(("i", "ig", "iac", "iinv", "il"), "a current: of which phase?"),
-    **dict.fromkeys(("p", "ppv", "pmeas", "pe", "q", "qmeas", "qe"), "a measured power, or a set-point?"),
-    **dict.fromkeys(("vref", "uref", "vset"), "a set-point of the grid's or of the DC link's voltage? Give a constant"),
-    **dict.fromkeys(("vnom", "unom", "vn", "un", "vbase"), "phase to neutral or line to line?"),
-    **dict.fromkeys(("f", "freq", "frequency", "w", "omega"), "nominal or measured?"),
-    **dict.fromkeys(("vab", "vbc", "vca", "uab", "ubc", "uca"), _LINE_TO_LINE),
-}
-_DUTY = "a duty cycle (unit duty) or a modulating signal?"
-_AMBIGUOUS_OUTPUTS = {
-    **dict.fromkeys(("da", "db", "dc", "dabc", "d", "dutya", "dutyb", "dutyc", "dutyabc"), _DUTY),
-    **dict.fromkeys(("va", "vb", "vc", "vabc", "ua", "ub", "uc", "uabc"), "a reference, or what is only told?"),
-}
 
 _TAIL = re.compile(r"_(v|kv|a|ka|w|kw|mw|var|kvar|mvar|va|kva|mva|hz|pu|s|ms|us)$", re.IGNORECASE)
-_MEASURED = re.compile(r"_?(meas|measured|mes|fb|in|feedback)$", re.IGNORECASE)
+_MEASURED = re.compile(
+    r"_?(?i:meas|measured|feedback)$|_(?i:mes|fb|in|act|actual|sens|sensed)$|(?<=[a-z])(?:Fb|In|Mes)$"
+)
+_MEASURED_FIRST = re.compile(r"^(?:meas|measured)_", re.IGNORECASE)
+_PLAIN = re.compile(r"[A-Za-z0-9_.:\[\]() ]+(?:-[A-Za-z0-9_.:\[\]() ]+)*\*?")
+_ALL_PHASES = ("l1l2l3", "l123", "abc", "123", "rst", "uvw")
+_FAMILIES = (("r", "y", "b"), ("l1", "l2", "l3"), ("r", "s", "t"), ("u", "v", "w"), ("1", "2", "3"))
+_PERHAPS = 'a switch, or what is only told? It could be {}; a mapping file says which, "{}" or {{record = "{}"}}'
+_MOST_BY_UNIT = 4
+_LONGEST = 100
+"""Letters of a name that is looked at (chosen): those that makers use have some 20."""
 
 
-def guess_input(name: str, width: int) -> Guess:
+def key_of(name: str) -> str | None:
+    """A name without capitals and separators; None of one with other letters or signs, which are never dropped."""
+    if len(name) > _LONGEST or not _PLAIN.fullmatch(name):
+        return None
+    return re.sub(r"[^a-z0-9]", "", name.replace("*", "star").casefold())
+
+
+def guess_input(name: str, width: int, hints: Hints = NO_HINTS) -> Guess:
     """Signals that an input of this name and so many elements means."""
-    return _guess(name, width, _INPUT_NAMES, _AMBIGUOUS_INPUTS)
+    exact = EXACT.get(name)
+    if name == "VA" and not {"vb", "vc"} <= set(hints.beside):
+        exact = APPARENT
+    if exact is not None and width == 1:
+        return _unclear(exact, hints, said_in(hints.description), "", width)
+    return _guess(name, width, hints, INPUT_NAMES, SIGNALS)
 
 
-def guess_output(name: str, width: int) -> Guess:
+def guess_output(name: str, width: int, hints: Hints = NO_HINTS) -> Guess:
     """Commands that an output means."""
-    return _guess(name, width, _OUTPUT_NAMES, _AMBIGUOUS_OUTPUTS)
+    found = _guess(name, width, hints, OUTPUT_NAMES, COMMANDS)
+    if not (found.names or found.note or any(_commands(key) for key in hints.beside)):
+        found = _guess(name, width, hints, TOLD_NAMES, COMMANDS)
+    if found.names or found.note or width != 1 or len(name) > _LONGEST:
+        return found
+    switch = may_be_switch(name, hints.unit, hints.description, hints.beside)
+    return Guess(note=_PERHAPS.format(switch, switch, name), candidates=(switch,)) if switch else found
 
 
-def _guess(name: str, width: int, known: Mapping[str, str], ambiguous: Mapping[str, str]) -> Guess:
-    for text, unit in _readings(name):
-        key = re.sub(r"[^a-z0-9]", "", text.casefold())
-        if width == len(PHASES) and (pattern := _of_three(key, known)):
-            return Guess(tuple(pattern), unit=unit)
-        if width == 1 and key in known:
-            return Guess((known[key],), unit=unit, inverted=known is _OUTPUT_NAMES and key in _WORKING)
-        if key in ambiguous:
-            return Guess(note=ambiguous[key])
-    return Guess()
+def _commands(key: str) -> bool:
+    """Whether an output of this name commands a phase."""
+    found = OUTPUT_NAMES.get(key) if key in OUTPUT_NAMES else next(iter(_of_three(key, OUTPUT_NAMES)), None)
+    return isinstance(found, str) and bool(phase_of(found))
 
 
-def _readings(name: str) -> Iterator[tuple[str, str]]:
-    """The name, and what is left of it without a unit or a word like measured at its end."""
-    yield name, ""
+def _guess(name: str, width: int, hints: Hints, known: Known, all_names: Sequence[str]) -> Guess:
+    if name in all_names and "_" in name:  # spelled as only here, it is meant so, whatever words stand beside it
+        hints = hints._replace(description="")
+    for text, tail, prefix in _readings(name, outputs=all_names is COMMANDS):
+        key = key_of(text)
+        found = None if key is None else _lookup(key, width, hints.beside, known)
+        if key is None or found is None:
+            continue
+        said = _in_its_letters(said_in(f"{prefix} {hints.description}"), key, hints.beside)
+        if isinstance(found, Unclear):
+            return _unclear(found, hints, said, tail, width)
+        why = _why_not(found[0], hints, said, tail, wide=width > 1)
+        if why:
+            return _contradicted(found, why, hints, said, all_names)
+        return Guess(found, unit=tail, inverted=all_names is COMMANDS and key in WORKING)
+    return _beyond_ascii(name, width, hints, known, all_names)
+
+
+def _readings(name: str, *, outputs: bool, prefix: str = "") -> Iterator[tuple[str, str, str]]:
+    """The name, or what is left of it without a unit, a word like measured or a group; the unit; the group."""
+    yield name, "", prefix
+    if len(name) > _LONGEST:
+        return
     if tail := _TAIL.search(name):
-        yield name[: tail.start()], tail[1]
-    if tail := _MEASURED.search(name):
-        yield from _readings(name[: tail.start()])
+        yield name[: tail.start()], tail[1], prefix
+    for pattern in () if outputs else (_MEASURED, _MEASURED_FIRST):
+        if found := pattern.search(name):
+            yield from _readings(name[: found.start()] + name[found.end() :], outputs=outputs, prefix=prefix)
+            return
+    group, dot, last = name.rpartition(".")
+    if dot and last:
+        yield from _readings(last, outputs=outputs, prefix=group.replace(".", " "))
 
 
-def _of_three(key: str, known: Mapping[str, str]) -> list[str]:
+def _lookup(key: str, width: int, beside: Collection[str], known: Known) -> tuple[str, ...] | Unclear | None:
+    """What a key means: a name for every element, or what it may mean."""
+    if width == len(PHASES) and (three := _of_three(key, known)):
+        return three
+    if width == len(PHASES) and (unclear := _unclear_three(key, known)):
+        return unclear
+    if width != 1:
+        found = known.get(key)
+        return Unclear(found.question, ()) if isinstance(found, Unclear) else None
+    if one := _one_of_three(key, beside, known):
+        return one
+    if key in WITH_SIBLINGS and known is INPUT_NAMES and not {f"{key[:-1]}a", f"{key[:-1]}b"} <= set(beside):
+        return WITH_SIBLINGS[key]
+    of_pairs = key in PAIRS and known is INPUT_NAMES and set(PAIRS[key]) <= set(beside)
+    found = OF_TWO_PHASES if of_pairs else known.get(key)
+    return (found,) if isinstance(found, str) else found
+
+
+def _of_three(key: str, known: Known) -> tuple[str, ...]:
     """Names for the elements of a port for three phases, from that of its phase a."""
-    candidates = [key.replace(word, "a", 1) for word in ("abc", "123") if word in key] or [f"{key}a"]
-    first = next((known[c] for c in candidates if c in known and "_a" in known[c]), None)
-    return [] if first is None else [first.replace("_a", f"_{phase}", 1) for phase in PHASES]
+    for found in map(known.get, _first_of_three(key)):
+        if isinstance(found, str) and phase_of(found) == "a":
+            return tuple(in_phase(found, phase) for phase in PHASES)
+    return ()
 
 
-def _phase_names(stems: Iterable[tuple[str, tuple[str, ...], tuple[str, ...]]]) -> dict[str, str]:
-    """Every way to write a quantity of one phase: Va, V_a_grid, vga."""
-    return {
-        key: pattern.format(phase)
-        for pattern, letters, words in stems
-        for letter in letters
-        for word in words
-        for phase in PHASES
-        for key in (f"{letter}{word}{phase}", f"{letter}{phase}{word}")
-    }
+def _unclear_three(key: str, known: Known) -> Unclear | None:
+    """What a port for three phases may mean, by its phase a."""
+    for found in map(known.get, _first_of_three(key)):
+        if isinstance(found, Unclear) and any(isinstance(m, str) and phase_of(m) == "a" for m in found.meanings):
+            return found
+    return None
 
 
-def _plain(names: Iterable[str]) -> dict[str, str]:
-    return {name.replace("_", ""): name for name in names}
+def _first_of_three(key: str) -> list[str]:
+    return [key.replace(word, "a", 1) for word in _ALL_PHASES if word in key] or [f"{key}a"]
 
 
-_INPUT_NAMES = (
-    _phase_names(_INPUT_STEMS)
-    | {word: signal for signal, words in _INPUT_WORDS.items() for word in words}
-    | _plain(SIGNALS)
-)
-_OUTPUT_NAMES = (
-    _phase_names(_OUTPUT_STEMS)
-    | {word: command for command, words in (_SWITCH_WORDS | _FRAME_WORDS).items() for word in words}
-    | dict.fromkeys(_WORKING, "block")
-    | _plain(COMMANDS)
-)
+def _one_of_three(key: str, beside: Collection[str], known: Known) -> tuple[str, ...] | None:
+    """The phase of a name whose two siblings are there: U1 U2 U3, VR VS VT, Iu Iv Iw, Vabc[1] Vabc[2] Vabc[3]."""
+    for family in (*_FAMILIES, ("0", "1", "2")):
+        for k, mark in enumerate(family):
+            for match in re.finditer(mark, key):
+                before, after = key[: match.start()], key[match.end() :]
+                around = f"{before}{after}"
+                if not before or (family[0] == "0" and "abc" not in around):
+                    continue
+                if not all(f"{before}{other}{after}" in beside for other in family):
+                    continue
+                if family[2] == "b" and f"{before}a{after}" in beside:
+                    continue
+                if mark.isdigit() and "abc" not in around and f"{before}4{after}" in beside:
+                    continue
+                found = known.get(f"{before.removesuffix('abc')}a{after}")
+                if isinstance(found, str) and phase_of(found) == "a":
+                    return (in_phase(found, PHASES[k]),)
+    return None
+
+
+def _in_its_letters(said: Said, key: str, beside: Collection[str]) -> Said:
+    """What is said of a port, where phase B beside R and Y is the third."""
+    places = [(key[: match.start()], key[match.end() :]) for match in re.finditer("b", key)]
+    if not any({f"{before}r{after}", f"{before}y{after}"} <= set(beside) for before, after in places):
+        return said
+    return said._replace(phases=frozenset("c" if phase == "b" else phase for phase in said.phases))
+
+
+def _why_not(meaning: Meaning, hints: Hints, said: Said, tail: str, *, wide: bool) -> str:
+    """What speaks against a meaning; empty where nothing does."""
+    if tail and hints.unit and spelled(tail) != spelled(hints.unit):
+        return f"its name ends in {tail}, its unit is {hints.unit}"
+    if text := misfit(quantity_of(meaning), hints.unit or tail):
+        return text
+    if spelled(hints.unit or tail) == "duty":  # of a duty that says its unit, the description may speak
+        said = said._replace(quantities=said.quantities - {"share"})
+    if words := contradiction(meaning, said, wide=wide):
+        return f"its {'description' if hints.description else 'group'} speaks of {words}"
+    return ""
+
+
+def _contradicted(names: tuple[str, ...], why: str, hints: Hints, said: Said, all_names: Sequence[str]) -> Guess:
+    wide = len(names) > 1
+    fitting = [] if wide else [n for n in all_names if n not in names and not _why_not(n, hints, said, "", wide=wide)]
+    best = max((support(name, said) for name in fitting), default=0)
+    by_description = [name for name in fitting if support(name, said) == best > 1]
+    by_unit = fitting if hints.unit and spelled(hints.unit) != "pu" and not by_description else []
+    candidates = (*names, *by_description, *(by_unit if len(by_unit) <= _MOST_BY_UNIT else ()))
+    note = f"by its name {_or(names)}, but {why}"
+    return Guess(note=f"{note}; it could be {_or(candidates)}" if candidates != names else note, candidates=candidates)
+
+
+def _unclear(found: Unclear, hints: Hints, said: Said, tail: str, width: int) -> Guess:
+    """What the unit and the description leave of several meanings."""
+    named = _phased([m for m in found.meanings if isinstance(m, str)], width)
+    against = {m: _why_not(m, hints, said, tail, wide=width > 1) for m in found.meanings}
+    left = [m for m in found.meanings if not against[m]]
+    best = max((support(m, said) for m in left), default=0)
+    likely = [m for m in left if support(m, said) == best] if best > 1 else left
+    if len(likely) == 1 and isinstance(likely[0], str) and len(found.meanings) > 1:
+        return Guess(_phased(likely, width), unit=tail)
+    candidates = _phased([m for m in left if isinstance(m, str)], width)
+    could = ""
+    if candidates:
+        could = f"it could be {_or((*candidates, *(m.words for m in left if isinstance(m, Other))))}"
+    elif named:
+        could = f"by its name {_or(named)}, but {against[named[0]]}"
+    if could:
+        could = f" {could[0].upper()}{could[1:]}" if found.question.endswith("?") else f"; {could}"
+    return Guess(note=f"{found.question}{could}", candidates=candidates or named)
+
+
+def _phased(names: Sequence[Meaning], width: int) -> tuple[str, ...]:
+    """Signals or commands by their names, of a port for three phases each of them in all phases."""
+    found = [name for name in names if isinstance(name, str)]
+    if width == 1:
+        return tuple(found)
+    return tuple(in_phase(name, phase) for name in found for phase in PHASES if phase_of(name) == "a")
+
+
+def _beyond_ascii(name: str, width: int, hints: Hints, known: Known, all_names: Sequence[str]) -> Guess:
+    """Of a name with letters or signs that are not known: what it would be without them, untied."""
+    if key_of(name) is not None:
+        return Guess()
+    plain = re.sub(r"[^A-Za-z0-9_.:\[\]()]", "", name)
+    found = _guess(plain, width, hints, known, all_names) if key_of(plain) else Guess()
+    candidates = found.names or found.candidates
+    if not candidates:
+        return Guess()
+    others = "".join(dict.fromkeys(re.sub(r"[A-Za-z0-9_.:\[\]() ]", "", name)))
+    return Guess(
+        note=f"its name has {others!r}, which may change what it means; without that it would be {_or(candidates)}",
+        candidates=candidates,
+    )
+
+
+def _or(names: Sequence[str]) -> str:
+    *first, last = names
+    return f"{', '.join(first)} or {last}" if first else last

@@ -33,6 +33,8 @@ UNITS: Mapping[str, Mapping[str, float]] = {
     "capacitance": {"F": 1.0, "mF": 1e3, "uF": 1e6},
     "irradiance": {"W/m2": 1.0, "kW/m2": 1e-3},
     "modulation": {"1": 1.0, "%": 100.0, "duty": 0.5},
+    "share": {"1": 1.0, "%": 100.0},
+    "temperature": {"C": 1.0, "K": 1.0},
     "number": _NUMBERS,
 }
 """Units by quantity, and how many of them make one of the signal's; besides, every quantity with a base takes pu."""
@@ -49,6 +51,8 @@ _SPELLINGS = {
     **dict.fromkeys(("radian", "radians"), "rad"),
     **dict.fromkeys(("rad/sec", "rads", "rad s-1", "radians/s"), "rad/s"),
     **dict.fromkeys(("-", "n/a", "none", "bool", "boolean", "logical", "unitless", "[-]"), "1"),
+    **dict.fromkeys(("°c", "degc", "celsius"), "C"),
+    **dict.fromkeys(("kelvin",), "K"),
     **dict.fromkeys(("w/m^2", "w/m²"), "W/m2"),
     **dict.fromkeys(("µs", "usec", "microseconds"), "us"),
     **dict.fromkeys(("msec", "milliseconds"), "ms"),
@@ -110,14 +114,19 @@ def scale_of(quantity: str, unit: str, bases: Bases, nominal: Nominal, base: flo
         return Scale(1.0)
     units = UNITS[quantity]
     if name not in units:
-        raise DoorError(_misfit(quantity, unit))
+        raise DoorError(misfit(quantity, unit))
     return Scale(units[name], _DUTY_OFFSET if name == "duty" else 0.0)
 
 
-def _misfit(quantity: str, unit: str) -> str:
-    allowed = [*(name for name in UNITS[quantity] if name != "1"), *([PER_UNIT] if quantity != "number" else [])]
+def misfit(quantity: str, unit: str) -> str:
+    """Why a unit is none of a quantity, and what is allowed; empty where it is one, or there is no unit."""
+    name = spelled(unit)
+    if name in ("", *UNITS[quantity]) or (name == PER_UNIT and quantity not in _WITHOUT_BASE):
+        return ""
+    allowed = [*(name for name in UNITS[quantity] if name != "1"), *([PER_UNIT] if quantity not in _NEVER_PU else [])]
     words = quantity.replace("_", " ").replace("dc ", "DC ")
-    return f"the unit {unit!r} does not fit a {words}; allowed: {', '.join(allowed) or 'none'}"
+    article = "an" if words[0] in "aei" else "a"
+    return f"the unit {unit!r} does not fit {article} {words}; allowed: {', '.join(allowed) or 'none'}"
 
 
 def _base(quantity: str, bases: Bases, nominal: Nominal) -> float:
@@ -142,6 +151,7 @@ def _base(quantity: str, bases: Bases, nominal: Nominal) -> float:
     return found
 
 
-_WITHOUT_BASE = ("time", "angle", "inductance", "resistance", "capacitance")
+_WITHOUT_BASE = ("time", "angle", "inductance", "resistance", "capacitance", "temperature")
+_NEVER_PU = ("number", *_WITHOUT_BASE)
 _BY_PHASE_RMS = {"phase_peak": 2**0.5, "phase_rms": 1.0, "line_rms": 3**0.5, "line_peak": 6**0.5}
 _STANDARD_IRRADIANCE_W_M2 = 1000.0

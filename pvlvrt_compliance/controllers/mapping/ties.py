@@ -2,13 +2,15 @@
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from pvlvrt_compliance.controllers.description import Port
 from pvlvrt_compliance.controllers.door import DoorError
 from pvlvrt_compliance.controllers.mapping.constants import Constant
-from pvlvrt_compliance.controllers.mapping.file import MappingFile, refusal
-from pvlvrt_compliance.controllers.mapping.names import Guess
+from pvlvrt_compliance.controllers.mapping.file import MappingFile
+from pvlvrt_compliance.controllers.mapping.names import Guess, Hints, key_of
+from pvlvrt_compliance.controllers.mapping.telling import shared
 from pvlvrt_compliance.errors import did_you_mean
 from pvlvrt_compliance.simulation.door.blocks import ITEM_SIZES, Element
 from pvlvrt_compliance.simulation.door.exchange import COMMANDS
@@ -76,46 +78,53 @@ class Side(NamedTuple):
     table: str  # of the mapping file
     ports: Sequence[RawPort]
     entries: Mapping[str, Any]
-    guess: Callable[[str, int], Guess]
+    guess: Callable[[str, int, Hints], Guess]
     known: Sequence[str]
     entry_type: Any
     names_of: Callable[[Any], Any]
     tie: Callable[[Slot, Any, str | None], Tie]
 
 
-def tied(side: Side, mapping: MappingFile) -> Mapped:
-    """Tie every element of the ports of one side.
+def tied(side: Side, mapping: MappingFile) -> tuple[Mapped, tuple[str, ...]]:
+    """Tie every element of the ports of one side; and all problems of the file, by line and key.
 
     What a name alone means but cannot be, because of its unit for instance, is left untied with a note.
-
-    Raises
-    ------
-    DoorError
-        With all problems of the file, by line and key.
     """
     wrong = dict(_wrong_entries(side))
     problems = {mapping.problem((side.table, key), text): None for key, text in wrong.items()}
     ties: dict[str, Tie] = {}
+    keys: dict[str, str] = {}  # of the file, by the element that they tie
     notes: dict[str, str] = {}
+    beside = _beside(side)
     for port in side.ports:
-        guess = side.guess(port.name, port.width)
+        guess = side.guess(port.name, port.width, Hints(port.unit, port.description, beside))
         notes[port.name] = guess.note
         for slot in (Slot(port, k) for k in range(port.width)):
             key, entry, name = _entry_of(slot, side, guess)
-            if entry is None or key in wrong:
+            if entry is None or key in wrong or _left_out(slot, side, mapping):
                 continue
             try:
                 _check_name(entry, name, side)
                 ties[slot.name] = side.tie(slot, entry, name)
+                keys[slot.name] = key
             except DoorError as error:
                 if key:
                     problems[mapping.problem((side.table, key), str(error))] = None
                 else:
                     notes[port.name] = str(error)
-    problems.update(dict.fromkeys(_twice(side, ties)))
-    if problems:
-        raise refusal("the ports of the controller cannot be tied to the plant", tuple(problems))
-    return _gathered(side, ties, notes)
+    problems.update(dict.fromkeys(_twice(side, ties, keys, mapping)))
+    return _gathered(side, ties, notes), tuple(problems)
+
+
+def _beside(side: Side) -> frozenset[str]:
+    """Keys of the names of all ports, and of what the file ties already."""
+    found = (key_of(name) for name in (*(port.name for port in side.ports), *_named(side)))
+    return frozenset(key for key in found if key)
+
+
+def _left_out(slot: Slot, side: Side, mapping: MappingFile) -> bool:
+    """Whether the file says something of an element that is a mistake."""
+    return any(mapping.left_out(side.table, key) for key in (f"{slot.port.name}[{slot.k}]", slot.port.name))
 
 
 def _entry_of(slot: Slot, side: Side, guess: Guess) -> tuple[str, Any, str | None]:
@@ -166,13 +175,15 @@ def _check_name(entry: Any, name: str | None, side: Side) -> None:
     raise DoorError(f"{name!r} is no {what}{did_you_mean(name, side.known)}; {known}")
 
 
-def _twice(side: Side, ties: Mapping[str, Tie]) -> Iterator[str]:
+def _twice(side: Side, ties: Mapping[str, Tie], keys: Mapping[str, str], mapping: MappingFile) -> Iterator[str]:
     if side.table == "inputs":
         return
     for name in COMMANDS:
         by = [port for port, tie in ties.items() if tie.name.removeprefix(INVERTED) == name]
         if len(by) > 1:
-            yield f"{' and '.join(by)} both give {name}; tie one of them to something else in a mapping file"
+            text = f"{' and '.join(by)} both give {name}; tie one of them to something else in a mapping file"
+            key = next((keys[port] for port in reversed(by) if keys[port]), "")
+            yield mapping.problem((side.table, key), text) if key else text
 
 
 def _gathered(side: Side, ties: Mapping[str, Tie], notes: Mapping[str, str]) -> Mapped:
@@ -185,9 +196,11 @@ def _gathered(side: Side, ties: Mapping[str, Tie], notes: Mapping[str, str]) -> 
         note = notes[port.name] if mapped_to is None else ""
         return Port(port.name, port.unit, port.description, mapped_to, port.width, note)
 
+    ports = [to_port(port) for port in side.ports]
+    together = shared(ports) if side.table == "inputs" else {}
     return Mapped(
         elements=tuple(tie.element for tie in ties.values() if tie.element is not None),
-        ports=tuple(to_port(port) for port in side.ports),
+        ports=tuple(replace(port, note=together.get(port.name, port.note)) for port in ports),
         unmapped=unmapped,
         constants=tuple(tie.constant for tie in ties.values() if tie.constant is not None),
     )

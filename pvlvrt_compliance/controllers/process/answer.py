@@ -1,8 +1,9 @@
 """What the process of a controller answers, and how it is read: data of somebody else, to be checked, never objects.
 
 A head in JSON (`ANSWER`) says which job it answers, and what; the record of a run lies beside it (`RECORD`), nothing
-but its numbers, row by row, as little-endian float64. Both are ordinary files of a size that is known or bounded;
-whatever else is found there is no answer.
+but its numbers, row by row, as little-endian float64. So does what it remembers at its end (`STATE`), where that is
+asked for: bytes, which nobody reads but a later process of the same controller. All are ordinary files of a size that
+is known or bounded; whatever else is found there is no answer.
 """
 
 import json
@@ -24,7 +25,7 @@ from pvlvrt_compliance.errors import SimulationError
 from pvlvrt_compliance.simulation.columns import RECORDED
 from pvlvrt_compliance.texts import all_printable
 
-ANSWER, RECORD = "answer.json", "record.f64"
+ANSWER, RECORD, STATE = "answer.json", "record.f64", "state.bin"
 """Files in the folder of a job."""
 
 _NUMBER = np.dtype("<f8")
@@ -32,9 +33,11 @@ _LONGEST_HEAD = 16 << 20
 """Bytes: a controller of 10 000 ports, each described in a line, has a fifth of it."""
 
 _LONGEST_TEXT = 4000  # characters of an error or a note
+_LONGEST_END = 1000  # of it
 _MOST_NOTES = 100
 _MOST_CHANNELS = 10_000
 _ROWS_AT_ONCE = 4096
+_LARGEST_STATE = 256 << 20  # bytes: chosen, for a controller with all its tables has a hundredth of it
 
 Text = Annotated[str, Field(max_length=_LONGEST_TEXT)]
 
@@ -47,16 +50,27 @@ class BadAnswerError(SimulationError):
 
 
 class Head(BaseModel):
-    """Head of an answer: one of an error, of a description, or of a record with what goes with it."""
+    """Head of an answer: one of an error, of a description, of faults, or of a record with what goes with it."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
     job: str
     error: Text | None = None
+    faults: Annotated[tuple[Text, ...], Field(max_length=_MOST_NOTES)] | None = None  # of one that is only looked at
     description: dict[str, Any] | None = None
     channels: Annotated[tuple[str, ...], Field(max_length=_MOST_CHANNELS)] | None = None
     notes: Annotated[tuple[Text, ...], Field(max_length=_MOST_NOTES)] = ()
     tripped_at_s: FiniteFloat | None = None
+    missing: Annotated[tuple[Text, ...], Field(max_length=_MOST_CHANNELS)] = ()  # what a replay was not given
+    state_bytes: Annotated[int, Field(ge=0, le=_LARGEST_STATE)] | None = None
+    stateless: Text = ""
+
+
+class Due(NamedTuple):
+    """What the record of a replay has: rows, and at least so many columns; further ones have names."""
+
+    rows: int
+    columns: int
 
 
 class Answer(NamedTuple):
@@ -65,9 +79,16 @@ class Answer(NamedTuple):
     head: Head
     description: Description | None = None
     samples: NDArray[np.float64] | None = None
+    state: bytes | None = None
 
 
-def write_answer(folder: Path, job: str, answer: Mapping[str, Any], samples: NDArray[np.float64] | None = None) -> None:
+def write_answer(
+    folder: Path,
+    job: str,
+    answer: Mapping[str, Any],
+    samples: NDArray[np.float64] | None = None,
+    state: bytes | None = None,
+) -> None:
     """Leave an answer: its record first, the head last and at once.
 
     Raises
@@ -83,16 +104,21 @@ def write_answer(folder: Path, job: str, answer: Mapping[str, Any], samples: NDA
             (folder / RECORD).unlink(missing_ok=True)  # room for the answer
             answer = {"error": f"{folder / RECORD} cannot be written: {error.strerror or error}"}
     bounded = dict(answer)
+    if state is not None:
+        bounded |= _put_state(folder / STATE, state)
     if "error" in bounded:
         bounded["error"] = _bounded(bounded["error"])
-    if "notes" in bounded:
-        bounded["notes"] = [_bounded(note) for note in bounded["notes"][:_MOST_NOTES]]
+    if "stateless" in bounded:
+        bounded["stateless"] = _bounded(bounded["stateless"])
+    for key in ("faults", "notes"):
+        if key in bounded:
+            bounded[key] = [_bounded(text) for text in bounded[key][:_MOST_NOTES]]
     unfinished = folder / f"{ANSWER}.part"
     unfinished.write_text(json.dumps({"job": job, **all_printable(bounded)}), "utf-8")
     unfinished.replace(folder / ANSWER)
 
 
-def read_answer(folder: Path, job: str, rows: int | None) -> Answer | None:
+def read_answer(folder: Path, job: str, rows: int | Due | None) -> Answer | None:
     """Read the answer to a job; None where there is none.
 
     Parameters
@@ -101,8 +127,9 @@ def read_answer(folder: Path, job: str, rows: int | None) -> Answer | None:
         Of the job.
     job : str
         What was told to the process, and to no other.
-    rows : int or None
-        Samples that the record of a run must have; None where the controller was to be described.
+    rows : int, Due or None
+        Samples that the record of a run must have, or what that of a replay must; None where the controller was to be
+        described.
 
     Raises
     ------
@@ -120,13 +147,36 @@ def read_answer(folder: Path, job: str, rows: int | None) -> Answer | None:
         raise BadAnswerError("it is to another question")
     if head.error is not None:
         return Answer(head)
+    if rows is None and head.faults is not None and head.description is None:
+        return Answer(head)
     if rows is None:
         return Answer(head, description=_description(head.description))
-    return Answer(head, samples=_samples(folder / RECORD, _channels(head.channels), rows))
+    if isinstance(rows, Due):
+        columns = rows.columns + len(_own(head.channels or ()))
+        return Answer(head, samples=None if head.missing else _numbers(folder / RECORD, columns, rows.rows))
+    samples = _samples(folder / RECORD, _channels(head.channels), rows)
+    state = None if head.state_bytes is None else _bytes_of(folder / STATE, head.state_bytes)
+    return Answer(head, samples=samples, state=None if state is None else bytes(state))
+
+
+def _put_state(file: Path, state: bytes) -> dict[str, Any]:
+    """Write what a run remembers; what the head says of it, also where that cannot be."""
+    if len(state) > _LARGEST_STATE:
+        return {"stateless": f"what it remembers takes {len(state)} bytes; {_LARGEST_STATE} are allowed"}
+    try:
+        file.write_bytes(state)
+    except OSError as error:
+        file.unlink(missing_ok=True)  # room for the answer
+        return {"stateless": f"what it remembers cannot be written: {error.strerror or error}"}
+    return {"state_bytes": len(state)}
 
 
 def _bounded(text: str) -> str:
-    return text if len(text) <= _LONGEST_TEXT else f"{text[: _LONGEST_TEXT - 4]} ..."
+    """A text that is not too long; its end stays, where the reason most often stands."""
+    if len(text) <= _LONGEST_TEXT:
+        return text
+    end = text[-_LONGEST_END:].lstrip()
+    return f"{text[: _LONGEST_TEXT - len(end) - 5].rstrip()} ... {end}"
 
 
 def _first_of(error: ValidationError) -> str:
@@ -159,7 +209,18 @@ def _channels(names: tuple[str, ...] | None) -> tuple[str, ...]:
     """
     if names is None or names[: len(RECORDED)] != RECORDED:
         raise BadAnswerError("channels: those that every record has are missing")
-    own = names[len(RECORDED) :]
+    _own(names[len(RECORDED) :])
+    return names
+
+
+def _own(own: tuple[str, ...]) -> tuple[str, ...]:
+    """Names of the controller's own channels.
+
+    Raises
+    ------
+    BadAnswerError
+        When one is no name of a channel, or there twice.
+    """
     try:
         for name in own:
             check_channel(name)
@@ -167,21 +228,24 @@ def _channels(names: tuple[str, ...] | None) -> tuple[str, ...]:
         raise BadAnswerError(f"channels: {_bounded(str(error))[:200]}") from None
     if len(set(own)) < len(own):
         raise BadAnswerError("channels: a name is there twice")
-    return names
+    return own
 
 
 def _samples(file: Path, channels: tuple[str, ...], rows: int) -> NDArray[np.float64]:
     """Rows of a record; those of the plant are finite."""
-    columns = len(channels)
-    data = _bytes_of(file, rows * columns * _NUMBER.itemsize)
-    if data is None:
-        raise BadAnswerError("there is no record")
-    samples = np.frombuffer(data, _NUMBER).reshape(rows, columns)
+    samples = _numbers(file, len(channels), rows)
     for first in range(0, rows, _ROWS_AT_ONCE):
         finite = np.isfinite(samples[first : first + _ROWS_AT_ONCE, : len(RECORDED)]).all(axis=0)
         if not finite.all():
             raise BadAnswerError(f"the record's {RECORDED[int(np.argmin(finite))]} is not finite")
-    return samples.astype(np.float64, copy=False)
+    return samples
+
+
+def _numbers(file: Path, columns: int, rows: int) -> NDArray[np.float64]:
+    data = _bytes_of(file, rows * columns * _NUMBER.itemsize)
+    if data is None:
+        raise BadAnswerError("there is no record")
+    return np.frombuffer(data, _NUMBER).reshape(rows, columns).astype(np.float64, copy=False)
 
 
 def _bytes_of(file: Path, size: int | None) -> bytearray | None:

@@ -13,19 +13,9 @@ from contextlib import suppress
 from typing import Any, NoReturn
 
 from pvlvrt_compliance.controllers.process.family import Process, adopt_orphans, descendants, end_descendants
+from pvlvrt_compliance.errors import Stopped
 
 _PATIENCE_S = 1.0  # with what has been told to end
-
-
-class Stopped(BaseException):
-    """A signal has asked this process to end: SIGINT, or SIGTERM, which a CI service, `timeout` and docker send.
-
-    No `KeyboardInterrupt`, of which libraries make what they like.
-    """
-
-    def __init__(self, number: int = signal.SIGINT) -> None:
-        super().__init__(number)
-        self.number = number
 
 
 STOPS = (KeyboardInterrupt, Stopped)

@@ -23,7 +23,7 @@ import numpy as np
 
 from pvlvrt_compliance.controllers.limits import MB, OUTPUT, TABLE, TIME, Limits, in_words, parameter_of
 from pvlvrt_compliance.controllers.process import command, family
-from pvlvrt_compliance.controllers.process.answer import Answer, BadAnswerError, read_answer
+from pvlvrt_compliance.controllers.process.answer import Answer, BadAnswerError, Due, read_answer
 from pvlvrt_compliance.controllers.process.child import end, killed_by, start
 from pvlvrt_compliance.controllers.process.family import FORKS
 from pvlvrt_compliance.controllers.process.lines import WRITTEN_BY_OTHERS, Lines, NonsenseError, SilenceError
@@ -84,7 +84,7 @@ class Server:
         self._busy = threading.Lock()  # one job at a time, whatever threads ask for one
         self._lines = Lines(None)
 
-    def do(self, job: Any, folder: Path, limits: Limits, rows: int | None) -> Ended:
+    def do(self, job: Any, folder: Path, limits: Limits, rows: int | Due | None) -> Ended:
         """Do a job (an object that can be pickled) in a folder that is empty, within its limits.
 
         ``rows`` are the samples of the record that it is to give; None where it gives none.
@@ -92,7 +92,7 @@ class Server:
         with self._busy:
             return self._do(job, folder, limits, rows)
 
-    def _do(self, job: Any, folder: Path, limits: Limits, rows: int | None) -> Ended:
+    def _do(self, job: Any, folder: Path, limits: Limits, rows: int | Due | None) -> Ended:
         token = secrets.token_hex(8)
         try:
             (folder / JOB).write_bytes(pickle.dumps(job))
@@ -213,7 +213,7 @@ def stop_apart() -> None:
     _server.end()
 
 
-def do_apart(job: Any, limits: Limits, rows: int | None = None) -> Ended:
+def do_apart(job: Any, limits: Limits, rows: int | Due | None = None) -> Ended:
     """Do a job in the server's process, within its limits.
 
     Parameters
@@ -221,8 +221,9 @@ def do_apart(job: Any, limits: Limits, rows: int | None = None) -> Ended:
     job : object
         That can be pickled.
     limits : Limits
-    rows : int, optional
-        Samples of the record that it is to give, all of a run; None where it is to describe a controller.
+    rows : int or Due, optional
+        Samples of the record that it is to give, all of a run, or what a replay is to give; None where it is to
+        describe a controller.
 
     Raises
     ------
@@ -235,7 +236,7 @@ def do_apart(job: Any, limits: Limits, rows: int | None = None) -> Ended:
         return _server.do(job, folder, limits, rows)
 
 
-def _answer(folder: Path, token: str, rows: int | None, ended: _End) -> tuple[Answer | None, str]:
+def _answer(folder: Path, token: str, rows: int | Due | None, ended: _End) -> tuple[Answer | None, str]:
     """Answer of a job, or why there is none that counts: what has not ended well has not answered, whatever it left."""
     if ended.status != 0:
         is_removed = not (ended.limit or folder.is_dir())

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,22 +19,31 @@ from numpy.typing import NDArray
 from pvlvrt_compliance.controllers.description import Value
 from pvlvrt_compliance.controllers.door import Door, described
 from pvlvrt_compliance.controllers.doors import door_to
+from pvlvrt_compliance.controllers.faults import Faults
 from pvlvrt_compliance.controllers.limits import Limits, hold_to
 from pvlvrt_compliance.controllers.process import command, family
-from pvlvrt_compliance.controllers.process.answer import ANSWER, RECORD, write_answer
+from pvlvrt_compliance.controllers.process.answer import ANSWER, RECORD, STATE, write_answer
 from pvlvrt_compliance.controllers.process.child import own_pipes
 from pvlvrt_compliance.controllers.process.isolation import JOB, PROGRESS, SAID
 from pvlvrt_compliance.controllers.process.lines import say
 from pvlvrt_compliance.controllers.process.watch import Watch, fence, open_fence
+from pvlvrt_compliance.controllers.replay.feed import Feed
+from pvlvrt_compliance.controllers.trial import try_out
 from pvlvrt_compliance.errors import PvlvrtError, SimulationError
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.simulation.parameters import Parameters
 from pvlvrt_compliance.simulation.recorder import RecordingPlan
+from pvlvrt_compliance.units import Nominal
 
-OWN_FILES = frozenset({JOB, SAID, PROGRESS, ANSWER, f"{ANSWER}.part", RECORD})
+if TYPE_CHECKING:
+    from pvlvrt_compliance.controllers.run import ForeignRecord
+
+OWN_FILES = frozenset({JOB, SAID, PROGRESS, ANSWER, f"{ANSWER}.part", RECORD, STATE})
 """Files in the folder of a job that are not its controller's."""
 
 _PATIENCE_S = 5.0  # with what a job has left behind
+
+_Given = tuple[dict[str, Any], NDArray[np.float64] | None, bytes | None]  # head of an answer, record, and state
 
 
 @dataclass(frozen=True)
@@ -45,6 +54,20 @@ class DescribeJob:
     given: Mapping[str, Value] = field(default_factory=dict)
     mapping: str | None = None  # file
     beside: str = field(default_factory=os.getcwd)  # folder that relative names in ``spec`` start from
+    allow_out_of_range: bool = False  # of the ranges that the controller states for its parameters
+    bare: bool = field(default=False, kw_only=True)  # see `Door.bare`
+
+
+@dataclass(frozen=True)
+class LookJob(DescribeJob):
+    """See what can be known of a controller, whatever is wrong with it."""
+
+
+@dataclass(frozen=True)
+class TrialJob(DescribeJob):
+    """Open a controller as a run would, and see what it says."""
+
+    parameters: Parameters = field(kw_only=True)
 
 
 @dataclass(frozen=True)
@@ -56,6 +79,18 @@ class RunJob(DescribeJob):
     plan: RecordingPlan = field(kw_only=True)
     digest: str = field(kw_only=True)  # of the controller that was described
     after_trip: bool = field(default=True, kw_only=True)  # whether it is called after a trip, too
+    since: bytes | None = field(default=None, kw_only=True)  # where an earlier run was at its end
+    keeps: bool = field(default=False, kw_only=True)  # whether it is kept where this one is then
+
+
+@dataclass(frozen=True)
+class ReplayJob(DescribeJob):
+    """Feed numbers to a controller, without a plant."""
+
+    feed: Feed = field(kw_only=True)
+    nominal: Nominal = field(kw_only=True)
+    digest: str = field(kw_only=True)  # of the controller that was described
+    bare: bool = field(default=True, kw_only=True)
 
 
 def main() -> None:
@@ -121,9 +156,9 @@ def _do(job_id: str, folder: Path, limits: Limits) -> None:
     os.environ.update(dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(folder)))  # of programs, too
     hold_to(limits)
     fence(limits)
-    samples = None
+    samples = state = None
     try:
-        answer, samples = _answer(job, folder)
+        answer, samples, state = _answer(job, folder)
     except PvlvrtError as error:
         answer = {"error": str(error)}
     if os.getpid() != process:  # the controller has made a copy of this process, which has come here, too
@@ -132,27 +167,70 @@ def _do(job_id: str, folder: Path, limits: Limits) -> None:
     sys.stderr.flush()
     open_fence()
     try:
-        write_answer(folder, job_id, answer, samples)
+        write_answer(folder, job_id, answer, samples, state)
     except FileNotFoundError:  # its folder has been removed, which is seen there
         os._exit(1)
 
 
-def _answer(job: DescribeJob, folder: Path) -> tuple[dict[str, Any], NDArray[np.float64] | None]:
-    door = door_to(job.spec, job.given, job.mapping)
+def record_of(door: Door, job: RunJob, progress: NDArray[np.float64]) -> "ForeignRecord":
+    """Run a job by its door, in this process; ``progress`` as of `run_through`.
+
+    Raises
+    ------
+    SimulationError
+        When the controller is another than was described, fails, or gives what cannot be used.
+    UsageError
+        When it cannot be opened.
+    """
+    from pvlvrt_compliance.controllers.run import run_through
+
+    _refuse_another(door, job.digest)
+    how: dict[str, Any] = {"after_trip": job.after_trip, "since": job.since, "keeps": job.keeps}
+    return run_through(door, job.scenario, job.parameters, job.plan, progress, **how)
+
+
+def _refuse_another(door: Door, digest: str) -> None:
+    if door.describe().digest != digest:
+        raise SimulationError("the controller's file has changed since the first test; its verdicts would be mixed")
+
+
+def _answer(job: DescribeJob, folder: Path) -> _Given:
+    if isinstance(job, (LookJob, TrialJob)):
+        return _looked_at(job), None, None
+    door = door_to(job.spec, job.given, job.mapping, allow_out_of_range=job.allow_out_of_range)
+    door.bare = job.bare
     try:
         return _use(door, job, folder)
     finally:
         door.close()
 
 
-def _use(door: Door, job: DescribeJob, folder: Path) -> tuple[dict[str, Any], NDArray[np.float64] | None]:
-    if not isinstance(job, RunJob):
-        return {"description": described(door).to_json()}, None
-    from pvlvrt_compliance.controllers.run import run_through
+def _looked_at(job: LookJob | TrialJob) -> dict[str, Any]:
+    """What is wrong with a controller, and what it says of itself all the same."""
+    faults, description = Faults(kept=True), None
+    with faults.told():
+        door = door_to(job.spec, job.given, job.mapping, faults, allow_out_of_range=job.allow_out_of_range)
+        try:
+            if isinstance(job, TrialJob):
+                try_out(door, job.parameters)
+            else:
+                description = described(door).to_json()
+        finally:
+            door.close()
+    return {"faults": faults.texts, "description": description}
 
-    if door.describe().digest != job.digest:
-        raise SimulationError("the controller's file has changed since the first test; its verdicts would be mixed")
+
+def _use(door: Door, job: DescribeJob, folder: Path) -> _Given:
+    if not isinstance(job, RunJob | ReplayJob):
+        return {"description": described(door).to_json()}, None, None
     with (folder / PROGRESS).open("r+b") as file:
         progress: Any = np.frombuffer(mmap.mmap(file.fileno(), 0), dtype=np.float64)
-    record = run_through(door, job.scenario, job.parameters, job.plan, progress, after_trip=job.after_trip)
-    return {"channels": record.channels, "notes": record.notes, "tripped_at_s": record.tripped_at_s}, record.samples
+    if isinstance(job, ReplayJob):
+        from pvlvrt_compliance.controllers.replay.through import replay_through
+
+        _refuse_another(door, job.digest)
+        given = replay_through(door, job.feed, job.nominal, progress)
+        return {"channels": given.further, "notes": given.notes, "missing": given.missing}, given.samples, None
+    record = record_of(door, job, progress)
+    head = {"channels": record.channels, "notes": record.notes, "tripped_at_s": record.tripped_at_s}
+    return head | {"stateless": record.stateless}, record.samples, record.state

@@ -4,33 +4,51 @@ The protocol is in docs/controllers/program.md.
 """
 
 import hashlib
+import math
 import struct
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from pvlvrt_compliance.controllers.debugging import is_debugged
 from pvlvrt_compliance.controllers.description import Description, Value
 from pvlvrt_compliance.controllers.door import Door, DoorCall, DoorError
+from pvlvrt_compliance.controllers.faults import RAISED, Faults
+from pvlvrt_compliance.controllers.file import content_of
 from pvlvrt_compliance.controllers.given_parameters import checked_parameters, seconds
+from pvlvrt_compliance.controllers.mapping.as_far import both_sides, loaded
+from pvlvrt_compliance.controllers.mapping.bare import both_bare
 from pvlvrt_compliance.controllers.mapping.commands import check_commands
 from pvlvrt_compliance.controllers.mapping.constants import set_constants
-from pvlvrt_compliance.controllers.mapping.file import load_mapping
-from pvlvrt_compliance.controllers.mapping.sides import map_inputs, map_outputs
+from pvlvrt_compliance.controllers.mapping.file import check_alone
 from pvlvrt_compliance.controllers.mapping.ties import Mapped, RawPort
-from pvlvrt_compliance.controllers.program.hello import PortAnswer, as_line, greeting, hello_in, shown, table_in
+from pvlvrt_compliance.controllers.notes import of_slow_task
+from pvlvrt_compliance.controllers.program.exchange import HEAD, binary_exchange, json_exchange
+from pvlvrt_compliance.controllers.program.hello import (
+    Hello,
+    PortAnswer,
+    as_line,
+    greeting,
+    hello_in,
+    table_in,
+    usable_of,
+)
 from pvlvrt_compliance.controllers.program.link import STDIO, TCP, Conversation, command_of, files_of, link_to
 from pvlvrt_compliance.simulation.door.blocks import Block, block_memory
+from pvlvrt_compliance.simulation.door.exchange import SIGNALS
 from pvlvrt_compliance.simulation.door.native_call import FUNCTION, address_of, guarded
 from pvlvrt_compliance.units import Nominal
 
 TIMEOUT = "reply_timeout_s"
 """Parameter that every program takes here besides its own."""
 
+SLOW_TASK_DUE = "slow_task_due"
+"""Signal that says in which samples a slow task is due."""
+
 SCHEMES = (STDIO, TCP)
 
 _STARTING_S = 30.0  # to start, and to get ready
 _REPLY_S = 10.0
-_HEAD = 8  # bytes before the numbers of a block: the last four are the length of its frame
 
 
 class ProgramDoor(Door):
@@ -44,6 +62,8 @@ class ProgramDoor(Door):
         Parameters that the user has set; ``reply_timeout_s`` is not the program's but how long it may take to answer.
     mapping : str, optional
         Mapping file.
+    allow_out_of_range : bool
+        Whether a parameter may be out of the range that it states for it.
 
     Raises
     ------
@@ -53,29 +73,74 @@ class ProgramDoor(Door):
 
     written = "stdio:COMMAND, tcp://HOST:PORT"
     schemes = SCHEMES
+    keeps_faults = True
 
-    def __init__(self, spec: str, given: Mapping[str, Value], mapping: str | None = None) -> None:
+    def __init__(
+        self,
+        spec: str,
+        given: Mapping[str, Value],
+        mapping: str | None = None,
+        faults: Faults = RAISED,
+        *,
+        allow_out_of_range: bool = False,
+    ) -> None:
         self._spec, self._said, self._farewell = spec, "", as_line({"end": True})
+        self._faults, self._talk = faults, None
         self._mapping_file = mapping
-        self._mapping = load_mapping(mapping)
-        self._reply_s = seconds(given, TIMEOUT) or _REPLY_S
-        own = {name: value for name, value in given.items() if name != TIMEOUT}
-        self._talk: Conversation | None = Conversation(link_to(spec, _STARTING_S), _STARTING_S)
+        self._mapping = loaded(mapping, faults)
+        self._reply_s = _patience(_REPLY_S)
+        with faults.told():
+            self._reply_s = seconds(given, TIMEOUT) or self._reply_s
+        self._given: dict[str, Value] = {}
         try:
-            self._talk.tell(greeting(own))
-            self._answer = self._talk.line()
-            self._hello = hello_in(self._answer)
-            self._given = checked_parameters(given, self._hello.parameter_infos(), besides=(TIMEOUT,))
+            self._hello = self._greeted({name: value for name, value in given.items() if name != TIMEOUT})
+            with faults.told():
+                known = self._hello.parameter_infos()
+                self._given = checked_parameters(given, known, None, (TIMEOUT,), allow_out_of_range)
         except DoorError:
             self.close()
+            with faults.told():
+                check_alone(self._mapping)
             raise
         self._inputs, self._outputs = _laid_out(self._hello.inputs), _laid_out(self._hello.outputs)
+
+    _talk: Conversation | None
+    _unusable = ""
+
+    def _greeted(self, own: Mapping[str, Value]) -> Hello:
+        """Answer to the greeting; where faults are kept, what can be used of it.
+
+        Raises
+        ------
+        DoorError
+            When there is none, or it cannot be used.
+        """
+        self._talk = Conversation(link_to(self._spec, _STARTING_S), _patience(_STARTING_S))
+        self._talk.tell(greeting(own))
+        self._answer = self._talk.line()
+        try:
+            return hello_in(self._answer)
+        except DoorError as error:
+            self._faults.tell(str(error))
+            self._unusable = str(error)
+        found = usable_of(self._answer)
+        if found is None and own:  # it may have given up because of its parameters
+            self.close()
+            return self._greeted({})
+        if found is None:
+            raise DoorError(self._unusable)
+        return found
 
     def describe(self) -> Description:
         """What it answered."""
         inputs, outputs = self._mapped(Nominal())
         found = self._hello.description(self._digest())
-        return replace(found, inputs=inputs.ports, outputs=outputs.ports, mapping=self._mapping_file)
+        notes = of_slow_task(self._hello.every, found.sample_time_s)
+        if notes and SIGNALS.index(SLOW_TASK_DUE) not in {element.signal for element in inputs.elements}:
+            notes += (
+                f"none of its inputs is tied to {SLOW_TASK_DUE}, which says where that is due: it has to count itself",
+            )
+        return replace(found, notes=notes, inputs=inputs.ports, outputs=outputs.ports, mapping=self._mapping_file)
 
     def besides(self) -> str:
         """What a program reads and runs is not known."""
@@ -88,11 +153,14 @@ class ProgramDoor(Door):
 
     def open(self, nominal: Nominal) -> DoorCall:
         """Have it start, and make the function that the loop calls."""
+        if self._unusable:
+            raise DoorError(self._unusable)
         talk, binary = self._talk, self._hello.mode == "binary"
         assert talk is not None
         inputs, outputs = self._mapped(nominal)
-        check_commands(outputs)
-        memories = [block_memory(_HEAD + 8 * sum(p.width for p in ports)) for ports in (self._inputs, self._outputs)]
+        if not self._faults.kept:
+            check_commands(outputs)
+        memories = [block_memory(HEAD + 8 * sum(p.width for p in ports)) for ports in (self._inputs, self._outputs)]
         set_constants(memories[0], inputs.constants)
         talk.tell(self._start(nominal))
         if table_in(talk.line()).get("ready") is not True:
@@ -100,10 +168,10 @@ class ProgramDoor(Door):
         talk.timeout_s = self._reply_s
         if binary:
             self._farewell = struct.pack("<I", 0)
-            exchange = _binary_exchange(talk, memories[0].data, memories[1].data)
+            exchange = binary_exchange(talk, memories[0].data, memories[1].data)
         else:
-            numbers = [memory.data.cast("d")[_HEAD // 8 :] for memory in memories]
-            exchange = _json_exchange(talk, self._inputs, self._outputs, *numbers)
+            numbers = [memory.data.cast("d")[HEAD // 8 :] for memory in memories]
+            exchange = json_exchange(talk, self._inputs, self._outputs, *numbers)
         function = FUNCTION(guarded(exchange, self._say))
         self._alive: Any = function
         return DoorCall(
@@ -116,6 +184,10 @@ class ProgramDoor(Door):
             every=self._hello.every,
             recorded=outputs.recorded,
         )
+
+    def snapshot(self) -> Any:
+        """A program has its memory to itself."""
+        raise DoorError("a program does not give what it remembers")
 
     def message(self) -> str:
         """Why the last exchange failed."""
@@ -140,12 +212,14 @@ class ProgramDoor(Door):
         """Of the files that a command names; of a program that runs elsewhere, what it answers."""
         digest = hashlib.sha256()
         files = files_of(command_of(self._spec)) if self.may_be_listed() else []
-        for part in [file.read_bytes() for file in files] or [self._answer]:
+        for part in [content_of(file) for file in files] or [self._answer]:
             digest.update(hashlib.sha256(part).digest())
         return digest.hexdigest()
 
     def _mapped(self, nominal: Nominal) -> tuple[Mapped, Mapped]:
-        return map_inputs(self._inputs, self._mapping, nominal), map_outputs(self._outputs, self._mapping, nominal)
+        if self.bare:
+            return both_bare(self._inputs, self._outputs)
+        return both_sides(self._inputs, self._outputs, self._mapping, nominal, self._faults)
 
     def _say(self, reason: str) -> None:
         self._said = reason
@@ -154,70 +228,15 @@ class ProgramDoor(Door):
 DOOR = ProgramDoor
 
 
+def _patience(most_s: float) -> float:
+    """How long a program may take to answer (s); one that is debugged may be stopped for as long as anybody likes."""
+    return math.inf if is_debugged() else most_s
+
+
 def _laid_out(ports: Sequence[PortAnswer]) -> tuple[RawPort, ...]:
     """Ports as float64 one after another, after the head of the block."""
-    raw, byte = [], _HEAD
+    raw, byte = [], HEAD
     for port in ports:
         raw.append(RawPort(port.name, port.unit, port.width, byte, description=port.description))
         byte += 8 * port.width
     return tuple(raw)
-
-
-def _binary_exchange(talk: Conversation, inputs: memoryview, outputs: memoryview) -> Callable[[], None]:
-    """Exchange of frames: a length of four bytes, then float64, both little-endian."""
-    begin = _HEAD - 4
-    struct.pack_into("<I", inputs, begin, len(inputs) - _HEAD)
-    expected = struct.pack("<I", len(outputs) - _HEAD)
-    request, numbers = inputs[begin:], outputs[_HEAD:]
-    size, tell, frame = len(numbers), talk.tell, talk.frame
-
-    def exchange() -> None:
-        tell(request)
-        numbers[:] = frame(expected, size)
-
-    return exchange
-
-
-def _json_exchange(
-    talk: Conversation, inputs: Sequence[RawPort], outputs: Sequence[RawPort], given: Any, taken: Any
-) -> Callable[[], None]:
-    """Exchange of lines of JSON."""
-    template = "{" + ", ".join(f"{_word(p.name)}: {_places(p.width)}" for p in inputs) + "}\n"
-    places = [(p.name, (p.byte - _HEAD) // 8, p.width) for p in outputs]
-    tell, line = talk.tell, talk.line
-
-    def exchange() -> None:
-        tell((template % tuple(given)).encode())
-        reply = table_in(answer := line())
-        try:
-            for name, place, width in places:
-                if width == 1:
-                    taken[place] = reply[name]
-                else:
-                    _take(reply[name], taken, place, width)
-        except (TypeError, ValueError, KeyError) as error:
-            raise DoorError(f"the program answered {shown(answer)}: {_what(error)}") from None
-
-    return exchange
-
-
-def _take(values: Any, taken: Any, place: int, width: int) -> None:
-    if not isinstance(values, list) or len(values) != width:
-        raise ValueError(f"a list of {width} numbers is due")
-    for k, value in enumerate(values):
-        taken[place + k] = value
-
-
-def _what(error: Exception) -> str:
-    if isinstance(error, KeyError):
-        return f"there is no {error.args[0]!r}"
-    return "a number is due" if isinstance(error, TypeError) else str(error)
-
-
-def _word(name: str) -> str:
-    """Name in JSON, for a template of Python."""
-    return as_line({name: 0}).decode()[1:].rpartition(":")[0].replace("%", "%%")
-
-
-def _places(width: int) -> str:
-    return "%r" if width == 1 else "[" + ", ".join(["%r"] * width) + "]"

@@ -8,12 +8,13 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, FiniteFloat,
 
 from pvlvrt_compliance.controllers.description import Description, ParameterInfo
 from pvlvrt_compliance.controllers.door import DoorError
+from pvlvrt_compliance.controllers.mapping.port_units import UNITS, spelled
+from pvlvrt_compliance.controllers.mapping.units_of_names import unit_of_name
 from pvlvrt_compliance.data.problems import dotted, problem_lines
 from pvlvrt_compliance.errors import listed
 from pvlvrt_compliance.simulation.door.blocks import MODULATING
-from pvlvrt_compliance.simulation.door.exchange import COMMANDS, SIGNALS
+from pvlvrt_compliance.simulation.door.exchange import COMMANDS, RAREST, SIGNALS
 from pvlvrt_compliance.texts import shortened
-from pvlvrt_compliance.waveforms.container import unit_of
 
 PROTOCOL, VERSION = "pvlvrt-check", 1
 _SHOWN = 200  # characters of what is not understood
@@ -42,6 +43,15 @@ class ParameterAnswer(_Strict):
     minimum: FiniteFloat | None = None
     maximum: FiniteFloat | None = None
 
+    @property
+    def default(self) -> bool | int | float | str:
+        """The default, as a number where it is not meant as a whole one: there are languages that write 1.0 as 1."""
+        if type(self.value) is not int:
+            return self.value
+        of_quantity = self.unit.strip() and spelled(self.unit) not in UNITS["number"]
+        in_fractions = any(not end.is_integer() for end in (self.minimum, self.maximum) if end is not None)
+        return float(self.value) if of_quantity or in_fractions else self.value
+
 
 def _as_table(key: str) -> BeforeValidator:
     return BeforeValidator(lambda given: given if isinstance(given, (dict, BaseModel)) else {key: given})
@@ -58,7 +68,7 @@ class Hello(_Strict):
     name: str = "program"
     sample_time_s: FiniteFloat = Field(gt=0)
     mode: Literal["json", "binary"] = "json"
-    every: int = Field(default=1, ge=1, le=1_000_000, description="samples from one run of a slow task to the next")
+    every: int = Field(default=1, ge=1, le=RAREST, description="samples from one run of a slow task to the next")
     inputs: tuple[AnyPort, ...] = tuple(PortAnswer(name=name) for name in SIGNALS)
     outputs: tuple[AnyPort, ...] = tuple(PortAnswer(name=name) for name in MODULATING)
     parameters: Mapping[str, AnyParameter] = {}
@@ -66,7 +76,7 @@ class Hello(_Strict):
     def parameter_infos(self) -> tuple[ParameterInfo, ...]:
         """Parameters as every door has them."""
         return tuple(
-            ParameterInfo(name, p.value, p.unit, p.description, p.minimum, p.maximum)
+            ParameterInfo(name, p.default, p.unit, p.description, p.minimum, p.maximum)
             for name, p in self.parameters.items()
         )
 
@@ -77,8 +87,8 @@ class Hello(_Strict):
 
 def greeting(given: Mapping[str, Any]) -> bytes:
     """First message of the host; ``given`` are the parameters that the user has set."""
-    units = {name: unit_of(name) for name in SIGNALS}
-    commands = {name: unit_of(name) for name in COMMANDS}
+    units = {name: unit_of_name(name) for name in SIGNALS}
+    commands = {name: unit_of_name(name) for name in COMMANDS}
     return as_line(
         {"protocol": PROTOCOL, "version": VERSION, "signals": units, "commands": commands, "parameters": dict(given)}
     )
@@ -134,3 +144,35 @@ def hello_in(line: bytes) -> Hello:
         if not 0 < sum(port.width for port in ports) <= _MOST_NUMBERS:
             raise DoorError(f"its answer to the hello: {what} must have 1 to {_MOST_NUMBERS} numbers")
     return hello
+
+
+_NOTHING: Mapping[str, Any] = {"name": "program", "sample_time_s": 0.0, "inputs": (), "outputs": (), "parameters": {}}
+
+
+def usable_of(line: bytes) -> Hello | None:
+    """What can be used of an answer that cannot be used as a whole; None where it is no table, or gives up.
+
+    A time that cannot be used is 0; of ports those are left out.
+    """
+    try:
+        message = table_in(line)
+    except DoorError:
+        return None
+    parts = {key: _usable_part(key, message) for key in _NOTHING}
+    return Hello.model_construct(version=1, mode="json", every=1, **parts)
+
+
+def _usable_part(key: str, message: Mapping[str, Any]) -> Any:
+    if key in ("inputs", "outputs") and isinstance(message.get(key), list):
+        found = [port for given in message[key] for port in _validated(key, [given])]
+        return tuple({port.name: port for port in found}.values())
+    if key not in message and key != "sample_time_s":
+        return Hello.model_fields[key].default
+    return _validated(key, message.get(key))
+
+
+def _validated(key: str, given: Any) -> Any:
+    try:
+        return getattr(Hello.model_validate({"version": VERSION, "sample_time_s": 1.0, key: given}), key)
+    except ValidationError:
+        return _NOTHING[key]

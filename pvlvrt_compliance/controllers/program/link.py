@@ -13,10 +13,13 @@ from pathlib import Path
 from typing import Protocol
 
 from pvlvrt_compliance.controllers.door import DoorError
+from pvlvrt_compliance.ordinary_file import is_there
+from pvlvrt_compliance.texts import shortened
 
 STDIO, TCP = "stdio:", "tcp://"
 """How the two are written."""
 
+_SHOWN = 200  # characters of a name
 _AT_ONCE = 1 << 16
 _LONGEST_LINE = 1 << 20
 _LONGEST_REASON = 4096
@@ -53,7 +56,8 @@ class Pipes:
         try:
             self._process = subprocess.Popen(arguments, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0)
         except (OSError, ValueError) as error:
-            raise DoorError(f"{arguments[0]} cannot be started: {error}") from None
+            why = getattr(error, "strerror", None) or error
+            raise DoorError(f"{shortened(arguments[0], _SHOWN)} cannot be started: {why}") from None
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         self._to, self._from = self._process.stdin.fileno(), self._process.stdout.fileno()
@@ -99,8 +103,8 @@ class Connection:
     def __init__(self, host: str, port: int, timeout_s: float) -> None:
         try:
             self._socket = socket.create_connection((host, port), timeout_s)
-        except OSError as error:
-            raise DoorError(f"nothing answers at {host}, port {port}: {error}") from None
+        except (OSError, ValueError) as error:  # a name that no host can have is no `OSError`
+            raise DoorError(f"nothing answers at {shortened(host, _SHOWN)}, port {port}: {error}") from None
         self._socket.settimeout(None)
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.write, self._receive = self._socket.sendall, self._socket.recv
@@ -159,7 +163,7 @@ def command_of(spec: str) -> list[str]:
 def files_of(command: list[str]) -> list[Path]:
     """Files that a command names: the program, and arguments that are files."""
     program = shutil.which(command[0])
-    return [Path(word) for word in ([program] if program else []) + command[1:] if Path(word).is_file()]
+    return [Path(word) for word in ([program] if program else []) + command[1:] if is_there(Path(word))]
 
 
 class Conversation:

@@ -1,8 +1,7 @@
 """The door for a Python class, ``my_ctrl.py:MyController``: see `pvlvrt_compliance.controllers`."""
 
 import hashlib
-import inspect
-import math
+import pickle
 import reprlib
 import struct
 from collections.abc import Callable, Mapping
@@ -11,18 +10,25 @@ from typing import Any
 
 from pvlvrt_compliance.controllers import Measurements
 from pvlvrt_compliance.controllers.channels import check_channel
-from pvlvrt_compliance.controllers.description import Description, ParameterInfo, Port, Value
+from pvlvrt_compliance.controllers.description import Description, Port, Value
 from pvlvrt_compliance.controllers.door import Door, DoorCall, DoorError
+from pvlvrt_compliance.controllers.faults import RAISED, Faults
+from pvlvrt_compliance.controllers.file import content_of
 from pvlvrt_compliance.controllers.given_parameters import checked_parameters
+from pvlvrt_compliance.controllers.mapping.bare import FIRST_INPUT
 from pvlvrt_compliance.controllers.mapping.file import load_mapping, mapping_path
-from pvlvrt_compliance.controllers.python.importing import class_in, tail
-from pvlvrt_compliance.controllers.python.tasks import NUMBERS, every, put, switches, with_slow_task
+from pvlvrt_compliance.controllers.mapping.units_of_names import unit_of_name
+from pvlvrt_compliance.controllers.notes import of_slow_task
+from pvlvrt_compliance.controllers.python.importing import let_pass, tail
+from pvlvrt_compliance.controllers.python.making import defaults_of, make, parameters_of, sample_time_s_of
+from pvlvrt_compliance.controllers.python.reading import class_or_text
+from pvlvrt_compliance.controllers.python.tasks import NUMBERS, every, lack_of, notes_of, put, switches, with_slow_task
 from pvlvrt_compliance.controllers.spelling import SUFFIX
 from pvlvrt_compliance.simulation.door.blocks import MODULATING, VOLTAGES, real_block
+from pvlvrt_compliance.simulation.door.ending import keep
 from pvlvrt_compliance.simulation.door.exchange import COMMANDS, SIGNALS
 from pvlvrt_compliance.simulation.door.native_call import FAILED, FUNCTION, address_of
 from pvlvrt_compliance.units import Nominal
-from pvlvrt_compliance.waveforms.container import unit_of
 
 _MOST_SIGNALS = 200
 
@@ -40,6 +46,8 @@ class PythonDoor(Door):
     mapping : str, optional
         Mapping file, which can only list files: it takes its measurements by their names. By default one beside its
         file that does.
+    allow_out_of_range : bool
+        Of no meaning here: a class states no ranges.
 
     Raises
     ------
@@ -49,33 +57,68 @@ class PythonDoor(Door):
 
     written = "FILE.py:CLASS, MODULE:CLASS"
     suffixes = (SUFFIX,)
+    keeps_faults = True
+
+    measurements: type[Measurements] = Measurements
+    """What `step` is given; another may look at what is read of it."""
 
     _mapping_file: str | None = None
+    _notes: tuple[str, ...] = ()
+    _unusable = ""
 
-    def __init__(self, spec: str, given: Mapping[str, Value], mapping: str | None = None) -> None:
+    def __init__(
+        self,
+        spec: str,
+        given: Mapping[str, Value],
+        mapping: str | None = None,
+        faults: Faults = RAISED,
+        *,
+        allow_out_of_range: bool = False,  # noqa: ARG002 - a class states none
+    ) -> None:
         place, _, self._class_name = spec.rpartition(":")
         if Path(spec).suffix == SUFFIX:
             raise DoorError(f"name the class, too: {spec}:MyController")
         if not place or not self._class_name.isidentifier():
             raise DoorError(f"write {self.written}")
-        found = class_in(place, self._class_name)
-        self._file = found.file
-        self._begin(found.made, given)
-        self._digest = hashlib.sha256(self._file.read_bytes()).hexdigest()
-        self._mapping_file = _list_of_files(str(self._file), mapping)
+        found = class_or_text(place, self._class_name, faults)
+        self._file, self._notes = found.file, found.notes
+        self._begin(found.made, given, faults, "".join(faults.texts))
+        self._digest = hashlib.sha256(content_of(self._file)).hexdigest()
+        with faults.told():
+            self._mapping_file = _list_of_files(str(self._file), mapping)
 
-    def _begin(self, made: Any, given: Mapping[str, Value]) -> None:
-        """Make the controller, and see that it is one."""
-        self._parameters = _parameters(made)
-        self._controller = _make(made, checked_parameters(given, self._parameters), bool(_defaults(made)))
+    def _begin(self, made: Any, given: Mapping[str, Value], faults: Faults = RAISED, unusable: str = "") -> None:
+        """Make the controller, and see that it is one. A class that is ``unusable`` is only seen."""
         self._said = ""
         self._alive: tuple[Any, ...] = ()
-        self._sample_time_s = _sample_time_s(self._controller)
-        self._switches = switches(self._controller)
-        self._every = every(self._controller)
-        for method in ("reset", "step"):
-            if not callable(getattr(self._controller, method, None)):
-                raise DoorError(f"{self._class_name} has no method {method}()")
+        self._parameters = parameters_of(made)
+        settings: dict[str, Value] = {}
+        with faults.told():
+            settings = checked_parameters(given, self._parameters)
+        known, self._controller = len(faults.texts), made
+        if not unusable:
+            with faults.told():
+                self._controller = make(made, settings, bool(defaults_of(made)))
+        if unusable or len(faults.texts) > known:  # what the class says counts, and what it lacks may be made with it
+            self._see(made, Faults(kept=True))
+        else:
+            self._see(self._controller, faults)
+        self._unusable = unusable or "".join(faults.texts[known : known + 1])
+
+    def _see(self, controller: Any, faults: Faults) -> None:
+        """What a controller, or a class of which none can be made, says by its attributes and methods."""
+        self._sample_time_s, self._every = 0.0, 1
+        self._switches: tuple[str, ...] = ()
+        with faults.told():
+            self._sample_time_s = sample_time_s_of(controller)
+        with faults.told():
+            self._switches = switches(controller)
+        with faults.told():
+            self._every = every(controller)
+        self._idle = notes_of(controller)
+        for method in ("reset", "step", *(("step_slow",) if self._every > 1 else ())):
+            if lack := lack_of(controller, method):
+                faults.tell(lack)
 
     def describe(self) -> Description:
         """Class, file, what it can be given and what it commands."""
@@ -85,9 +128,10 @@ class PythonDoor(Door):
             name=self._class_name,
             digest=self._digest,
             sample_time_s=self._sample_time_s,
-            inputs=tuple(Port(name, unit_of(name), mapped_to=name) for name in SIGNALS),
-            outputs=tuple(Port(name, unit_of(name), mapped_to=name) for name in commands),
+            inputs=tuple(Port(name, unit_of_name(name), mapped_to=name) for name in SIGNALS),
+            outputs=tuple(Port(name, unit_of_name(name), mapped_to=name) for name in commands),
             parameters=self._parameters,
+            notes=(*self._notes, *self._idle, *of_slow_task(self._every, self._sample_time_s)),
             mapping=self._mapping_file,
         )
 
@@ -110,14 +154,30 @@ class PythonDoor(Door):
 
     def open(self, nominal: Nominal) -> DoorCall:
         """Reset the controller and make the function that the loop calls."""
+        if self._unusable:
+            raise DoorError(self._unusable)
+        self._reset(nominal)
+        return self._opened()
+
+    def _reset(self, nominal: Nominal) -> None:
         try:
             self._controller.reset(nominal)
+        except DoorError:
+            raise
+        except BaseException as error:
+            let_pass(error)
+            raise DoorError(f"reset() failed: {tail(error)}") from None
+
+    def _opened(self) -> DoorCall:
+        try:
             names = self._signal_names()
         except DoorError:
             raise
         except BaseException as error:
-            raise DoorError(f"reset() failed: {tail(error)}") from None
-        inputs = real_block(range(len(SIGNALS)))
+            let_pass(error)
+            raise DoorError(f"signals() failed: {tail(error)}") from None
+        first = FIRST_INPUT if self.bare else 0
+        inputs = real_block(range(first, first + len(SIGNALS)))
         commands = self._commands
         further = range(len(COMMANDS), len(COMMANDS) + len(names))
         outputs = real_block([*(COMMANDS.index(name) for name in commands), *further])
@@ -132,6 +192,22 @@ class PythonDoor(Door):
             every=self._every,
             recorded=names,
         )
+
+    def snapshot(self) -> bytes:
+        """The controller as pickle has it."""
+        try:
+            return pickle.dumps(self._controller)
+        except BaseException as error:
+            raise DoorError(f"{self._class_name} cannot be pickled: {error!r}") from None
+
+    def resume(self, nominal: Nominal, snapshot: Any) -> DoorCall:
+        """Put a pickled controller in the place of one at rest, which may have set up what stands beside it."""
+        self._reset(nominal)
+        try:
+            self._controller = pickle.loads(snapshot)
+        except BaseException as error:
+            raise DoorError(f"{self._class_name} cannot be unpickled: {error!r}") from None
+        return self._opened()
 
     def message(self) -> str:
         """The exception that ended the last step."""
@@ -161,13 +237,14 @@ class PythonDoor(Door):
         signals = controller.signals if names else None
         due = len(self._commands)
         read = struct.Struct(f"{len(SIGNALS)}d").unpack_from
-        new: Any = tuple.__new__
+        new, told = tuple.__new__, self.measurements
 
         def advance(_argument: Any) -> int:
             try:
                 # Not `_make`, which checks the length anew: this is the cost of every sample.
-                commands = step(new(Measurements, read(inputs)))
+                commands = step(new(told, read(inputs)))
             except BaseException as error:
+                keep(error)
                 self._said = f"step() failed: {tail(error)}"
                 return FAILED
             try:
@@ -176,7 +253,8 @@ class PythonDoor(Door):
                 else:
                     put(outputs, commands, due)
             except (TypeError, ValueError) as error:
-                self._said = f"step() must return {NUMBERS[due]} numbers, not {reprlib.repr(commands)}: {error}"
+                which = f" ({', '.join(self._commands)})" if due > len(MODULATING) else ""
+                self._said = f"step() must return {NUMBERS[due]} numbers{which}, not {reprlib.repr(commands)}: {error}"
                 return FAILED
             return 0
 
@@ -189,6 +267,7 @@ class PythonDoor(Door):
                     outputs[k] = said[name]
                 return 0
             except BaseException as error:
+                keep(error)
                 self._said = f"signals() failed: {tail(error)}"
                 return FAILED
 
@@ -212,46 +291,3 @@ def _list_of_files(file: str, named: str | None) -> str | None:
         said = "a Python class takes its measurements by their names"
         raise DoorError(f"{said}; --mapping does not go with it, but for one that only lists files (files = [...])")
     return path if mapping is not None and mapping.files else None
-
-
-def _defaults(made: Any) -> dict[str, Value]:
-    """Arguments of the constructor that have a default which can be set."""
-    try:
-        arguments = inspect.signature(made).parameters.values()
-    except (TypeError, ValueError):
-        return {}
-    return {a.name: a.default for a in arguments if isinstance(a.default, (bool, int, float, str))}
-
-
-def _parameters(made: Any) -> tuple[ParameterInfo, ...]:
-    """Parameters of a class, with their defaults."""
-    return tuple(ParameterInfo(name, value) for name, value in (_defaults(made) or _attributes(made)).items())
-
-
-def _attributes(made: Any) -> dict[str, Value]:
-    """Public attributes of a class that can be set."""
-    names = [name for name in dir(made) if not name.startswith("_") and name != "commands_voltages"]
-    found = {name: getattr(made, name) for name in names}
-    return {name: value for name, value in found.items() if isinstance(value, (bool, int, float, str))}
-
-
-def _make(made: Any, given: Mapping[str, Value], keywords: bool) -> Any:
-    try:
-        if keywords:
-            return made(**given)
-        controller = made()
-        for name, value in given.items():
-            setattr(controller, name, value)
-        return controller
-    except BaseException as error:
-        raise DoorError(f"{getattr(made, '__name__', made)} cannot be made: {tail(error)}") from None
-
-
-def _sample_time_s(controller: Any) -> float:
-    name = type(controller).__name__
-    given = getattr(controller, "sample_time_s", None)
-    if given is None:
-        raise DoorError(f"{name} has no attribute sample_time_s")
-    if isinstance(given, (int, float)) and math.isfinite(given) and given > 0:
-        return float(given)
-    raise DoorError(f"{name}.sample_time_s is {reprlib.repr(given)}; it must be a number of seconds above zero")

@@ -10,8 +10,12 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 from pvlvrt_compliance.controllers.door import DoorError
+from pvlvrt_compliance.controllers.file import check_there
+from pvlvrt_compliance.controllers.process.command import is_the_server
 from pvlvrt_compliance.controllers.spelling import SUFFIX, names_module
 from pvlvrt_compliance.errors import did_you_mean
+from pvlvrt_compliance.ordinary_file import is_there
+from pvlvrt_compliance.simulation.door.ending import is_from_outside, is_of_the_debugger
 
 _OF_A_PACKAGE = "__init__.py"
 _TRACEBACK_LINES = 6
@@ -24,6 +28,7 @@ class Found(NamedTuple):
 
     made: Any
     file: Path
+    notes: tuple[str, ...] = ()  # how it was found, where that needs saying
 
 
 def class_in(place: str, name: str) -> Found:
@@ -44,23 +49,38 @@ def class_in(place: str, name: str) -> Found:
     return Found(found, file)
 
 
+def let_pass(error: BaseException) -> None:
+    """Raise again what ends a run from outside; in the process of a controller all that is raised is its own."""
+    if is_from_outside(error) and not is_the_server():
+        raise error
+
+
 def tail(error: BaseException) -> str:
     """An exception, and the last lines of where it came from."""
     frames = [f for f in traceback.extract_tb(error.__traceback__) if Path(f.filename).parent != _IN_HERE]
     own = [f for f in frames if "importlib" not in f.filename]
-    lines = [f"  {Path(f.filename).name}, line {f.lineno}, in {f.name}: {f.line}" for f in own[-_TRACEBACK_LINES:]]
+    lines = [  # of a class that was typed there is no text
+        f"  {Path(f.filename).name}, line {f.lineno}, in {f.name}{f': {f.line}' if f.line else ''}"
+        for f in own[-_TRACEBACK_LINES:]
+    ]
     said = "".join(traceback.format_exception_only(error)).strip()[:_LONGEST_REASON]
-    return "\n".join([said, *lines])
+    return "\n".join([said, *lines, *_hint(error)])
+
+
+def _hint(error: BaseException) -> tuple[str, ...]:
+    """What to do about it, where that is known: a process of its own has no terminal that a debugger could ask."""
+    return ("breakpoint() needs --debug",) if is_of_the_debugger(error) and is_the_server() else ()
 
 
 def _module(name: str) -> tuple[ModuleType, Path]:
     """Module by its name, and its file."""
-    sys.path.insert(0, str(Path.cwd()))
+    _reach(Path.cwd())
     try:
         found = importlib.util.find_spec(name)
     except ModuleNotFoundError as error:
         found, missing = None, error.name or name
     except BaseException as error:  # a package that the module lies in is imported, and may do anything
+        let_pass(error)
         raise DoorError(f"{name} cannot be imported: {tail(error)}") from None
     else:
         missing = name
@@ -73,15 +93,14 @@ def _module(name: str) -> tuple[ModuleType, Path]:
 
 def _of_file(file: Path) -> tuple[ModuleType, Path]:
     """Module of a file, with the modules beside it within reach."""
-    if not file.is_file():
-        raise DoorError(f"there is no file {file}")
+    check_there(file)
     path = file.resolve()
     folder, names = path.parent, [path.stem]
-    while (folder / _OF_A_PACKAGE).is_file() and folder.name.isidentifier() and folder != folder.parent:
+    while is_there(folder / _OF_A_PACKAGE) and folder.name.isidentifier() and folder != folder.parent:
         folder, names = folder.parent, [folder.name, *names]
-    sys.path.insert(0, str(path.parent))
+    _reach(path.parent)
     if len(names) > 1 and path.stem.isidentifier():
-        sys.path.insert(0, str(folder))
+        _reach(folder)
         return _imported(".".join(names), str(file)), file
     specification = importlib.util.spec_from_file_location(file.stem, file)
     if specification is None or specification.loader is None:
@@ -91,12 +110,19 @@ def _of_file(file: Path) -> tuple[ModuleType, Path]:
     try:
         specification.loader.exec_module(module)
     except BaseException as error:
+        let_pass(error)
         raise DoorError(f"{file} cannot be imported: {tail(error)}") from None
     return module, file
+
+
+def _reach(folder: Path) -> None:
+    """Have what lies in a folder be found first; once, however often a controller is opened in this process."""
+    sys.path[:] = [str(folder), *(place for place in sys.path if place != str(folder))]
 
 
 def _imported(name: str, shown: str) -> ModuleType:
     try:
         return importlib.import_module(name)
     except BaseException as error:
+        let_pass(error)
         raise DoorError(f"{shown} cannot be imported: {tail(error)}") from None

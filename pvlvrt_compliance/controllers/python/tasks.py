@@ -1,18 +1,16 @@
 """What a class may have besides its step: switches that this returns, too, and a slow task."""
 
+import inspect
 import reprlib
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from pvlvrt_compliance.controllers import Measurements
 from pvlvrt_compliance.controllers.door import DoorError
-from pvlvrt_compliance.simulation.door.exchange import SWITCHES
+from pvlvrt_compliance.simulation.door.exchange import RAREST, SWITCHES
 
 NUMBERS: Mapping[int, str] = {3: "three", 4: "four", 5: "five", 6: "six"}
 """Of what `step` may have to return."""
-
-RAREST = 1_000_000
-"""Samples between two runs of a slow task at most, chosen: of 10 us, ten seconds."""
 
 
 def put(outputs: Any, commands: Any, due: int) -> None:
@@ -47,6 +45,33 @@ def every(controller: Any) -> int:
             f" 2 to {RAREST}"
         )
     return given
+
+
+def notes_of(controller: Any) -> tuple[str, ...]:
+    """What it has that does nothing: a period without a slow task, signals that are no method."""
+    given, signals, found = getattr(controller, "every", None), getattr(controller, "signals", None), []
+    if not callable(getattr(controller, "step_slow", None)) and type(given) is int and given > 1:
+        found.append(f"every is {given}, but there is no method step_slow(): slow_task_due is 1 in every sample")
+    if signals is not None and not callable(signals):
+        found.append("signals is no method: nothing of it is recorded; write def signals(self), which returns a dict")
+    return tuple(found)
+
+
+def lack_of(controller: Any, method: str) -> str:
+    """Why a method cannot be called as it will be, with one argument; empty where it can."""
+    name, function = type(controller).__name__, getattr(controller, method, None)
+    if not callable(function):
+        return f"{controller.__name__ if isinstance(controller, type) else name} has no method {method}()"
+    if isinstance(controller, type):
+        return ""  # there is no object yet, whose method would be called
+    try:
+        inspect.signature(function).bind(None)
+    except TypeError as error:
+        told = "nominal" if method == "reset" else "measurements"
+        return f"{name}.{method}() must take one argument, {method}(self, {told}): {error}"
+    except ValueError:  # of what is compiled nothing is known
+        pass
+    return ""
 
 
 def with_slow_task(controller: Any) -> Callable[[Measurements], Any]:

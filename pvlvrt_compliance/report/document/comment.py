@@ -7,6 +7,7 @@ from pvlvrt_compliance.report import marked
 from pvlvrt_compliance.report.console import summary_line
 from pvlvrt_compliance.report.gate import STOPS, Told, of_the_run, told, worst_first
 from pvlvrt_compliance.report.joining import Joined, count, few, joined
+from pvlvrt_compliance.report.provenance import out_of_range_in_words
 from pvlvrt_compliance.report.verdicts import name_of
 from pvlvrt_compliance.results import Results, Status
 from pvlvrt_compliance.results.files import REPORT
@@ -46,8 +47,15 @@ def _head(results: Results, known: int) -> list[str]:
         f"### {spell.STATUS_SYMBOL[verdict]} Grid code: {word}",
         "",
         marked.plain(summary_line(results)),
+        *_out_of_range(results),
         *_out_of_date(results),
     ]
+
+
+def _out_of_range(results: Results) -> list[str]:
+    """Parameters of the controller that were allowed out of the range that it states."""
+    words = out_of_range_in_words(results.provenance)
+    return ["", f"Out of the range that the controller states: {marked.plain(words, _REASON)}."] if words else []
 
 
 def _out_of_date(results: Results) -> list[str]:

@@ -7,6 +7,7 @@ from pvlvrt_compliance.report.format import number, row
 from pvlvrt_compliance.report.gate import STOPS, told_of
 from pvlvrt_compliance.report.language import Texts
 from pvlvrt_compliance.report.logo import logo_content
+from pvlvrt_compliance.report.provenance import out_of_range_in_words
 from pvlvrt_compliance.report.verdicts import counts_by, name_of, part_of
 from pvlvrt_compliance.results import ProfileSummary, Results, Status, Verdict
 from pvlvrt_compliance.results.details import FIELDS, IDENTITY
@@ -159,6 +160,8 @@ def _origin(provenance: dict[str, Any], texts: Texts) -> Iterator[Fact]:
         yield Fact(texts("front.controller"), provenance.get("controller_name") or provenance["controller"])
         yield Fact(texts("front.controller_kind"), provenance.get("controller_kind", ""))
         yield Fact(texts("front.controller_file"), provenance["controller"])
+        if words := out_of_range_in_words(provenance):
+            yield Fact(texts("front.out_of_range"), words)
     elif "record" in provenance:
         yield Fact(texts("front.record"), str(provenance["record"]))
     for name in ("controller_digest", "record_digest"):

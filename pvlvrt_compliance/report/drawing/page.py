@@ -42,9 +42,9 @@ def _trace(of: Line | Area, trace: dict[str, Any]) -> dict[str, Any]:
 
 def _layout(panel: Panel) -> dict[str, Any]:
     return {
-        "title": {"text": panel.title, "x": 0.05},
-        "xaxis": {"title": {"text": panel.x.label}, "type": panel.x.scale},
-        "yaxis": {"title": {"text": panel.y.label}, **_reach(panel.y)},
+        "title": {"text": literal(panel.title), "x": 0.05},
+        "xaxis": {"title": {"text": literal(panel.x.label)}, "type": panel.x.scale},
+        "yaxis": {"title": {"text": literal(panel.y.label)}, **_reach(panel.y)},
         "legend": {"orientation": "h", "y": -0.25},
         "showlegend": True,
         "height": _HEIGHT_PX,

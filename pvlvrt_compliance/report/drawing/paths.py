@@ -116,13 +116,14 @@ def _part(x: Array, y: Array, canvas: Canvas, ink: Ink, ways: Ways) -> None:
     swings[1:-1] &= swings[:-2] | swings[2:]  # none on its own
     swings[-1] |= swings[-2:].any()  # a last one that is shorter
     ends = np.append(begins[1:], len(x))
+    cuts = np.unique(np.searchsorted(x, canvas.instants))
     for group in _alike(swings):
         first, end = int(begins[group.start]), int(ends[group.stop - 1])
         if not swings[group.start]:
             ways.stroke.append(ink.line(x[first : end + 1], y[first : end + 1]))  # up to the first of the next
             continue
-        cuts = np.searchsorted(x[first : end + 1], canvas.instants) + first
-        for begin, stop in pairwise(sorted({first, *(int(cut) for cut in cuts if first < cut < end), end})):
+        within = slice(np.searchsorted(cuts, first, "right"), np.searchsorted(cuts, end))
+        for begin, stop in pairwise([first, *cuts[within].tolist(), end]):
             _swing(x[begin:stop], y[begin:stop], ink, ways)
 
 
@@ -150,7 +151,8 @@ def _swing(x: Array, y: Array, ink: Ink, ways: Ways) -> None:
     turns = np.count_nonzero(np.diff(np.sign(np.diff(y))))
     half_period = (x[-1] - x[0]) / max(turns, 1)
     cell = min(max(_MORE_THAN_HALF * half_period, _FINEST_CELL), _CELL)
-    begins = np.unique(np.searchsorted(x, np.arange(x[0], x[-1], cell))) if x[-1] > x[0] else np.zeros(1, dtype=int)
+    places = np.arange(x[0], x[-1], cell)
+    begins = np.unique([0, *np.searchsorted(x, places[places < x[-1]])])  # rounding may put the last beyond the end
     high = _joined(np.maximum.reduceat(y, begins), np.fmax)
     low = _joined(np.minimum.reduceat(y, begins), np.fmin)
     places = np.append(x[begins], x[-1])

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pvlvrt_compliance.report import format as spell
 from pvlvrt_compliance.report.drawing.model import Drawing
 from pvlvrt_compliance.report.gate import Outcome, Told, numbers_in_words, of_the_run, told_of
+from pvlvrt_compliance.report.provenance import out_of_range_in_words
 from pvlvrt_compliance.report.verdicts import left_aside
 from pvlvrt_compliance.report.xml_text import unique_name as _unique
 from pvlvrt_compliance.report.xml_text import xml_text as _text
@@ -38,6 +39,7 @@ def render(results: Results, drawings: Mapping[str, Drawing] | None = None) -> b
         "run_id": results.run_id,
         "command": str(results.provenance.get("command", "")),
         "selection": "; ".join(left_aside(results)),
+        "controller_out_of_range": out_of_range_in_words(results.provenance),
     }
     cases = [told_of(test, allow_unjudged=results.allow_unjudged) for test in results.tests]
     suites = [

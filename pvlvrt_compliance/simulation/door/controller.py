@@ -36,15 +36,19 @@ def turned_state(x: PlantState, by: Rotation) -> PlantState:
 
 @kernel
 def synchronised_controller(
-    plant: PlantState, m: complex, first: int, p: PlantParams, tables: PlantTables, door: DoorTable
+    plant: PlantState, m: complex, first: int, p: PlantParams, tables: PlantTables, door: DoorTable, is_new: bool
 ) -> tuple[int, int]:
     """Let the controller see the steady state that the plant will begin in, turned back in time; nothing moves.
+
+    One that is not new goes on from where it was.
 
     Returns
     -------
     tuple of int
         How it ended, and the period in which it did: the first one when all is well.
     """
+    if not is_new:
+        return COMPLETED, first
     timing = door.timing
     T_c = timing.ratio * p.ratio * p.T_S
     t = first * p.ratio * p.T_S

@@ -97,6 +97,9 @@ ON = 0.5
 LARGEST = {"m_a": 10.0, "u_a_ref_v": 1e5}
 """Largest command of either kind that is taken for one (-, V)."""
 
+RAREST = 1_000_000
+"""Samples from one run of a slow task to the next at most, chosen: of 10 us, ten seconds."""
+
 LATEST_CALL, TRIP_SEEN, IGNORED_AT, IGNORED_STATUS = range(4)
 """What a run tells of its progress: instants (s) of the latest call, of the first after a trip, and of the first fault
 of the controller after it, with how that would have ended the run."""

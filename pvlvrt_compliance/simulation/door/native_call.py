@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from pvlvrt_compliance.kernel import instructions
+from pvlvrt_compliance.simulation.door.ending import keep
 
 FUNCTION = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p)
 """What is at the address: ``int32_t function(void *argument)``, 0 when all is well."""
@@ -25,6 +26,7 @@ def guarded(do: Callable[[], None], tell: Callable[[str], None]) -> Callable[[An
         try:
             do()
         except BaseException as error:
+            keep(error)
             tell(str(error) or repr(error))
             return FAILED
         return 0

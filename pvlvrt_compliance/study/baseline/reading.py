@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from pvlvrt_compliance.data.text import UnreadableError, read_text
 from pvlvrt_compliance.errors import UsageError, listed
+from pvlvrt_compliance.ordinary_file import mode_of
 from pvlvrt_compliance.study.baseline.entries import Baseline
 from pvlvrt_compliance.study.baseline.text import HEAD, parsed
 
@@ -37,7 +38,7 @@ def read_baseline(name: str, spelled: str = "--baseline") -> BaselineFile:
         text = read_text(Path(name), "a baseline")
     except UnreadableError as error:
         place = name if error.line is None else f"{name}:{error.line}"
-        begin = "" if Path(name).exists() else f"; an empty one is a file with the line {HEAD!r}"
+        begin = "" if mode_of(Path(name)) else f"; an empty one is a file with the line {HEAD!r}"
         raise UsageError(f"{spelled} {place}: {error}{begin}") from None
     baseline, problems = parsed(text, name)
     if problems:

@@ -35,8 +35,11 @@ class Here(NamedTuple):
 
         clear_abandoned()
         to_run = [item for unit in units for item in items_of(unit)]
+        made_here = self.controller is not None and self.controller.is_in_process
         simulator = SharedSimulator(
-            simulator_for(work.job, self.controller), to_run, work.job.parameters, is_ahead=self.is_ahead
+            *(simulator_for(work.job, self.controller), to_run, work.job.parameters),
+            is_ahead=self.is_ahead,
+            in_thread=not made_here,  # breakpoints, Ctrl-C and what is printed belong to the thread that has begun it
         )
         with _stopped_early(self.controller), simulator:
             for number, unit in enumerate(units):

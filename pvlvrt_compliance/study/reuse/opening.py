@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pvlvrt_compliance.errors import UsageError, unwritable
+from pvlvrt_compliance.study.settling import settling_simulator
 from pvlvrt_compliance.trust import distrust
 from pvlvrt_compliance.units import DATA_SIZE, parse_quantity
 
@@ -45,10 +46,13 @@ def _problem_of(folder: str) -> str:
     path = Path(folder)
     if not folder:
         return "a folder is needed"
-    if not path.exists():
-        return ""
-    if not path.is_dir():
-        return "it is not a folder"
+    try:
+        if not path.exists():
+            return ""
+        if not path.is_dir():
+            return "it is not a folder"
+    except OSError as error:  # too long, or in a folder that cannot be entered
+        return f"it cannot be used: {error.strerror}"
     said = distrust(path)
     return (
         f"it is not used: {said}, and verdicts would rest on what lies there; name a folder of your own" if said else ""
@@ -72,6 +76,8 @@ def reuse_notes(job: "Job", controller: "ForeignSimulator | None") -> Iterator[s
         if isinstance(said, UsageError):
             raise said from None
         yield str(said)  # for want of room: the run goes on
+    if job.debug:
+        return  # which is told
     if controller is not None and (why := _unknown(controller)):
         yield f"{controller.spec}: no records are reused: {why}"
 
@@ -84,10 +90,8 @@ def simulator_for(job: "Job", controller: "ForeignSimulator | None") -> "Simulat
     UsageError
         When the folder may be somebody else's by now, or on this machine.
     """
-    from pvlvrt_compliance.simulation.simulate import simulate
-
-    simulator = controller or simulate
-    if job.reuse is None or (controller is not None and _unknown(controller)):
+    simulator = settling_simulator(job, controller)
+    if job.reuse is None or job.debug or (controller is not None and _unknown(controller)):
         return simulator
     if said := _problem_of(job.reuse):
         raise UsageError(f"{job.reuse}: {said}")

@@ -9,7 +9,7 @@ from pvlvrt_compliance.study.work import Tested
 
 def reuse_of(job: Job, finished: Collection[Tested]) -> dict[str, Any]:
     """For the provenance: the folder, how many tests are finished, and how many of them on records from there."""
-    if job.reuse is None:
+    if job.reuse is None or job.debug:
         return {}
     return {"folder": job.reuse, "tests": len(finished), "reused": sum(tested.is_reused for tested in finished)}
 

@@ -37,11 +37,12 @@ def test_what_it_is(command, sends):
 
 
 def test_why_it_cannot_be_opened(command, sends):
-    """An error of it is lines of text. A library has no word of its own there."""
+    """An error of it is lines of text, and so is what is known of it. A library has no word of its own there."""
     if sends.refused is None:
         return
     ended = command("controllers", "inspect", *sends.refused)
-    assert (ended.status, ended.out) == (2, "")
+    assert ended.status == 2
+    worst.of_a_terminal(ended.out)
     worst.of_a_terminal(ended.err)
     assert worst.MARK in ended.err
     assert len(ended.err) < 20 * worst.LONGEST
@@ -60,3 +61,15 @@ def test_why_it_has_failed(command, sends, tmp_path):
     for file in ("report.html", "junit.xml", "results.json", "report.md", "verdicts.csv", "github-summary.md"):
         assert worst.MARK in worst.text_of(out / file), file
     assert worst.MARK in worst.text_of(tmp_path / "summary.md")
+
+
+@pytest.mark.slow
+def test_the_sheets_of_why_it_has_failed(command, sends, tmp_path):
+    """The same as PDF: read, with what no font has spelled out, and nothing that leads out of the document."""
+    pytest.importorskip("typst", reason="the extra pdf is not installed")
+    run = ("--profile", "iec61400-21", "--sag", "50%", "--output", tmp_path, "--waveforms", "none", *QUICK)
+    ended = command(*run, *sends.failing, "--format", "pdf", "--report-field", f"client={worst.MARK} <b> #emph[x] $1$")
+    assert ended.status == 3
+    worst.of_a_terminal(ended.err)
+    sheets = worst.text_of(tmp_path / "report.pdf")
+    assert sheets.count(worst.IN_SHEETS) > 1

@@ -165,6 +165,15 @@ def test_a_run_by_a_profile(command, profile, tmp_path):
         assert worst.MARK in worst.text_of(out / file)
 
 
+@pytest.mark.slow
+def test_the_sheets_of_a_run_by_a_profile(command, profile, tmp_path):
+    """The same texts as PDF."""
+    pytest.importorskip("typst", reason="the extra pdf is not installed")
+    run = ("--profile", profile, "--sag", "90%", "--output", tmp_path / "out", "--waveforms", "none")
+    check(command(*run, "--format", "pdf"), statuses=(0, 1))
+    assert worst.IN_SHEETS in worst.text_of(tmp_path / "out" / "report.pdf")
+
+
 FORGED = f"{worst.IN_C}\x00{'y' * 20_000}"  # JSON has no halves of letters
 
 KEPT = {"status", "bound", "schema_version", "kind", "there", "confidence", "language", "moved", "is", "origin"}

@@ -7,6 +7,7 @@ import typer
 
 import worst
 from pvlvrt_compliance.cli.main import app
+from tests.hostile.options import ONLY
 
 MAIN = ("--profile", "iec61400-21", "--sag", "90%", "--list")
 BESIDE = {
@@ -22,6 +23,7 @@ BESIDE = {
     ("profiles", "new"): (),
     ("profiles", "schema"): (),
     ("controllers", "inspect"): ("absent.py:Controller",),
+    ("controllers", "replay"): ("absent.so", "--inputs", "absent.csv"),
     ("controllers", "header"): (),
     ("controllers", "new"): ("begun",),
     ("config", "show"): (),
@@ -121,3 +123,16 @@ def test_what_is_taken(command, tmp_path):
     read = {file.name: worst.text_of(file) for file in out.rglob("*") if file.is_file()}
     for file in ("report.html", "results.json"):
         assert read[file].count(worst.MARK) > 2, file
+
+
+@pytest.mark.parametrize("address", ONLY["--cluster"], ids=range(len(ONLY["--cluster"])))
+def test_an_address_of_no_cluster(command, tmp_path, address):
+    """Where a run would ask it, it is refused with one line of text, and nothing is simulated or written."""
+    pytest.importorskip("distributed", reason="the extra cluster is not installed")
+    run = ("--profile", "iec61400-21", "--sag", "90%", "--output", tmp_path / "out")
+    ended = command(*run, f"--cluster={address}".replace("\x00", ""))
+    assert (ended.status, ended.out) == (2, "")
+    worst.of_a_terminal(ended.err)
+    assert ended.err.startswith("pvlvrt-check: ")
+    assert ended.err.count("\n") == 1
+    assert not (tmp_path / "out").exists()

@@ -15,7 +15,7 @@ import worst
 from consoles import surroundings
 from pvlvrt_compliance.cli.guarding import guarded
 from pvlvrt_compliance.cli.main import run
-from pvlvrt_compliance.cli.telling import screen
+from pvlvrt_compliance.cli.telling import screen, tell
 from pvlvrt_compliance.compiled.notes import tell_in_lines
 from pvlvrt_compliance.errors import KeptFileWarning
 from sending import DOORS
@@ -138,6 +138,16 @@ def test_warnings(category):
 
 
 OWNERS = {"telling.py", "flushing.py"}
+
+
+@pytest.mark.parametrize("word", ["\n::set-output name=x::y", "a\u2029b", "a\n\n b", "\r\npvlvrt-check: PASS"])
+def test_no_line_of_a_name_passes_for_ours(word):
+    """A name may have lines; every one after the first stands further in, as lines of a message do."""
+    with redirect_stderr(io.StringIO()) as said:
+        tell(f"{word}: cannot be read: No such file or directory")
+    first, *more = said.getvalue().removesuffix("\n").split("\n")
+    assert first.startswith("pvlvrt-check:")
+    assert all(line.startswith("  ") and line.strip() for line in more)
 
 
 def test_nothing_else_prints():

@@ -160,5 +160,5 @@ int fmi3DoStep(void *c, double t, double h, bool finished, bool *event, bool *te
     return found == TERMINATE ? OK : found;
 }
 const char *fmi3GetVersion(void) { return "3.0"; }
-#include "fmi3_rest.h"
+#include "rest_of_fmi.h"
 #endif

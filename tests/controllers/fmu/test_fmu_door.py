@@ -13,6 +13,7 @@ from fmu_sources import CLOCK, EXPERIMENT, built, compiled, description, packed
 
 from pvlvrt_compliance.controllers.door import DoorError
 from pvlvrt_compliance.controllers.fmu.door import FmuDoor
+from pvlvrt_compliance.controllers.in_process import Debugged
 from pvlvrt_compliance.controllers.simulator import ForeignSimulator
 from pvlvrt_compliance.errors import SimulationError
 from pvlvrt_compliance.scenario.sag import Sag
@@ -96,6 +97,8 @@ def test_compiled_fmu(small, opened, version):
     mine, theirs = simulator(SHORT, QUICK), opened("small.py:Small", gain=0.98)(SHORT, QUICK)
     assert simulator.description.kind == f"fmi{version}"
     assert furthest(mine, theirs, ("i_a_a", "v_dc_v", "m_alpha", "m_beta")) < 1e-12
+    debugged = Debugged(str(small(version)), {"gain": 0.98})
+    assert all(furthest(debugged(SHORT, QUICK), mine, [name]) == 0 for name in mine.segments[0].channels)
     other = ForeignSimulator(str(small(version)))(SHORT, QUICK)
     assert furthest(other, theirs, ["m_alpha"]) > 1e-3
 

@@ -98,8 +98,8 @@ def test_example_on_the_page_is_a_mapping_file(tmp_path):
     mapped = map_inputs(inputs, load_mapping(file), NOMINAL)
     assert mapped.unmapped == ("y[0]", "y[1]", "y[2]")
     assert map_outputs(
-        [port("ma"), port("Ea"), port("run"), port("Pout", "W")], load_mapping(file), NOMINAL
-    ).recorded == ("p_out_w",)
+        [port("ma"), port("Ea"), port("run"), port("Pout", "W"), port("Pref")], load_mapping(file), NOMINAL
+    ).recorded == ("p_out_w", "p_ref_w")
 
 
 def test_files_that_a_mapping_lists(tmp_path):

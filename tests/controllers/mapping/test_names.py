@@ -73,3 +73,16 @@ def test_an_input_that_enables_stays_an_input():
     """What a controller is told by `enabled` is no switch."""
     assert guess_input("enable", 1).names == ("enabled",)
     assert not guess_input("enable", 1).inverted
+
+
+@pytest.mark.parametrize("third", ["Output current phase B", "Current of phase b, B of RYB"])
+def test_phase_b_beside_r_and_y_is_the_third(third):
+    """The letters of a description are those of the ports: B is phase c here, and phase b beside A and C."""
+    ryb = [port(f"Iout_{x}", description=f"Output current phase {x}") for x in "RY"]
+    found = map_inputs([*ryb, port("Iout_B", description=third)], None, NOMINAL)
+    assert [p.mapped_to for p in found.ports] == ["i_a_a", "i_b_a", "i_c_a"]
+    abc = [port(f"Iout_{x}", description=f"Output current phase {x}") for x in "AC"]
+    found = map_inputs([*abc, port("Iout_B", description=third)], None, NOMINAL)
+    assert found.ports[2].mapped_to == "i_b_a"
+    crossed = map_inputs([*ryb, port("Iout_B", description="Output current phase A")], None, NOMINAL)
+    assert crossed.ports[2].mapped_to is None

@@ -13,6 +13,7 @@ from pvlvrt_compliance.controllers.mapping.commands import check_commands, missi
 from pvlvrt_compliance.controllers.mapping.constants import set_constants
 from pvlvrt_compliance.controllers.mapping.file import MappingFile
 from pvlvrt_compliance.controllers.mapping.sides import map_inputs, map_outputs
+from pvlvrt_compliance.controllers.mapping.telling import told_of
 from pvlvrt_compliance.simulation.door.exchange import COMMANDS, SIGNALS
 from pvlvrt_compliance.simulation.door.ports import INT16, REAL32
 from pvlvrt_compliance.units import Nominal
@@ -216,3 +217,16 @@ def test_an_element_of_any_number(index):
     mapping = MappingFile.model_validate({"inputs": {f"u[{index}]": {"signal": "u_a_v"}}})
     with pytest.raises(DoorError, match=r"u has 3 elements, counted from 0|the controller has no such input"):
         map_inputs([port("u", width=3)], mapping, NOMINAL)
+
+
+@pytest.mark.parametrize("name", ["I_größe", "P out", "2nd"])
+def test_an_output_whose_name_is_no_channel_is_told(name):
+    """It is not recorded, and every run says why; with a name from a file it is."""
+    ports = map_outputs([port(name), port(f"{name}.")], None, NOMINAL).ports
+    assert [(output.mapped_to, output.note.partition(";")[0]) for output in ports] == 2 * [
+        (None, "not recorded: its name cannot be that of a channel")
+    ]
+    (told,) = told_of((), ports)
+    assert told.startswith(f"not recorded, as a channel cannot be called so: outputs {name} and {name}.; ")
+    named = MappingFile.model_validate({"outputs": {name: {"record": "p_out_w"}}})
+    assert map_outputs([port(name)], named, NOMINAL).recorded == ("p_out_w",)

@@ -13,6 +13,7 @@ from pvlvrt_compliance.controllers.process.answer import (
     ANSWER,
     RECORD,
     BadAnswerError,
+    Due,
     read_answer,
     write_answer,
 )
@@ -228,6 +229,43 @@ def test_a_record_is_no_description(tmp_path):
     write_answer(tmp_path, JOB, GOOD, SAMPLES)
     with pytest.raises(BadAnswerError, match="description"):
         read_answer(tmp_path, JOB, None)
+
+
+def test_the_record_of_a_replay_is_read(tmp_path):
+    """Columns that are due, and those that have names; any number may stand there."""
+    samples = np.array([[1.0, np.nan, -np.inf], [4.0, 5.0, 6.0]])
+    write_answer(tmp_path, JOB, {"channels": ("p_own_w",), "notes": ("said",)}, samples)
+    found = read_answer(tmp_path, JOB, Due(2, 2))
+    assert np.array_equal(found.samples, samples, equal_nan=True)
+    assert (found.head.channels, found.head.notes) == (("p_own_w",), ("said",))
+
+
+def test_a_replay_may_say_what_it_was_not_given(tmp_path):
+    """Its record means nothing then, and is not asked for."""
+    write_answer(tmp_path, JOB, {"channels": (), "missing": ("u_b_v",)})
+    found = read_answer(tmp_path, JOB, Due(2, 3))
+    assert (found.head.missing, found.samples) == (("u_b_v",), None)
+
+
+@pytest.mark.parametrize(
+    ("answer", "samples", "words"),
+    [
+        ({"channels": ()}, np.zeros((2, 2)), "has 32 bytes; 48 are due"),
+        ({"channels": ()}, np.zeros((3, 3)), "has 72 bytes; 48 are due"),
+        ({"channels": ("a",)}, np.zeros((2, 3)), "has 48 bytes; 64 are due"),
+        ({}, None, "there is no record"),
+        ({"channels": ("a b",)}, np.zeros((2, 4)), "channels: 'a b' is not a name for a channel"),
+        ({"channels": ("a", "a")}, np.zeros((2, 5)), "channels: a name is there twice"),
+        ({"channels": ("u_a_v",)}, np.zeros((2, 4)), "channels: the record has a channel 'u_a_v' already"),
+        ({"missing": [1]}, None, "missing.0"),
+    ],
+)
+def test_a_forged_record_of_a_replay_is_refused(tmp_path, answer, samples, words):
+    """It has as many numbers as are due, and further names are names."""
+    write_answer(tmp_path, JOB, answer, samples)
+    with pytest.raises(BadAnswerError) as error:
+        read_answer(tmp_path, JOB, Due(2, 3))
+    assert words in str(error.value)
 
 
 def test_a_record_that_finds_no_room_is_an_error(tmp_path):

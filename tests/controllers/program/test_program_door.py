@@ -209,6 +209,26 @@ def test_not_ready():
 
 
 @pytest.mark.parametrize(
+    ("parameter", "is_whole"),
+    [
+        ({"value": 1}, True),
+        ({"value": 1, "unit": "-", "minimum": 0, "maximum": 2}, True),
+        ({"value": 1, "minimum": 0.5, "maximum": 2}, False),
+        ({"value": 1, "maximum": 1.2}, False),
+        ({"value": 1, "unit": "pu"}, False),
+        ({"value": 20, "unit": "mHz/s"}, False),
+        ({"value": True, "unit": "pu"}, False),
+    ],
+)
+def test_a_default_without_a_fraction(parameter, is_whole):
+    """There are languages that write 1.0 as 1: a unit, or a range with a fraction, says that it is no whole number."""
+    hello = {"version": 1, "sample_time_s": 1e-4, "parameters": {"p": parameter}}
+    (info,) = hello_in(json.dumps(hello).encode()).parameter_infos()
+    assert (type(info.value) is int) is is_whole
+    assert info.value == parameter["value"]
+
+
+@pytest.mark.parametrize(
     ("given", "reason"),
     [
         ({"gian": 1.0}, 'did you mean "gain"'),
@@ -259,7 +279,8 @@ def _take_and_close(server):
 def test_page_of_the_protocol():
     """The messages on the page are those of the protocol."""
     page = (EXAMPLES.parent / "docs" / "controllers" / "program.md").read_text("utf-8")
-    host, answer, start = (json.loads(text) for text in re.findall(r"```json\n(.*?)```", page, re.DOTALL))
+    host, answer, start, slow = (json.loads(text) for text in re.findall(r"```json\n(.*?)```", page, re.DOTALL))
     assert hello_in(json.dumps(answer).encode()).inputs[1].width == 3
+    assert hello_in(json.dumps(slow).encode()).every == 25
     assert host.keys() == json.loads(greeting({})).keys()
     assert start["start"].keys() == {"nominal", "parameters"}

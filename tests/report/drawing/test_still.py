@@ -101,6 +101,15 @@ def test_an_outline_follows_its_wave():
     assert "z" not in drawn.edges
 
 
+@pytest.mark.parametrize("begin", [0.0050, 0.0051, 0.0061, 0.0071, 0.0146])
+def test_an_outline_ends_with_its_wave(begin):
+    """Wherever it begins, and even where rounding puts the edge of a last cell just beyond its end."""
+    x = np.linspace(begin, begin + 0.255, 2001)
+    drawn = line_paths(line(np.where(np.arange(2001) % 2, 0.1, 0.9), x=x), CANVAS)
+    points = np.concatenate(points_of(drawn.fill))
+    assert (points[:, 0].min(), points[:, 0].max()) == (round(1000 * x[0]), round(1000 * x[-1]))
+
+
 def test_a_slow_wave_stays_a_curve():
     """Ten cycles in 500 px can be seen as such."""
     drawn = line_paths(line(0.5 + 0.4 * np.sin(20 * np.pi * np.linspace(0, 1, 4000))), CANVAS)

@@ -5,66 +5,14 @@ import io
 import pypdf
 import pytest
 
-from baselines import held
+from pages_seen import CHECKS, EVIL, FILTERS, PHONE, beyond_the_window, in_language, seen_of, seen_tests
 from pvlvrt_compliance.report.formats import html
 from pvlvrt_compliance.results import ReportDetails, Status, Verdict
 
 pytestmark = pytest.mark.browser
 
-PHONE = {"viewport": {"width": 390, "height": 844}}
+
 A4_PX = 680  # 180 mm between the margins
-CHECKS = (
-    *("ride_through", "reactive_current", "negative_sequence_current", "support_dynamics"),
-    *("active_power_recovery", "oscillation", "overfrequency_power"),
-)
-EVIL = "</script><script>alert(1)</script></style><img src=x onerror=alert(2)>]]>\"'{{7*7}}&amp;"
-
-
-def _verdict(check, status=Status.PASS, **fields):
-    numbers = {"measured": 0.98, "limit": 1.02, "margin": 0.04, "unit": "pu", "bound": "at_most", "at_s": 0.4}
-    return Verdict(check=check, status=status, clause="NTS 631 v2.0, 5.11.2.2.4", **numbers | fields)
-
-
-@pytest.fixture(scope="module")
-def results(make_test, make_results):
-    """Six tests of seven checks: two runs of one sag, one of them failed; marginal, unjudged, failed, tripped ones."""
-    passed = tuple(map(_verdict, CHECKS))
-    failed = (_verdict("ride_through", Status.FAIL, margin=-0.2, message="the breaker opens"), *passed[1:])
-    marginal = (*passed[:-1], _verdict("overfrequency_power", margin=0.001, uncertainty=0.005))
-    unjudged = (*passed[1:], Verdict(check="ride_through", status=Status.NOT_EVALUATED, message="no voltage"))
-    asked = make_test().scenario
-    turned = {**asked, "point_on_wave_deg": 90.0}
-    tests = [
-        make_test("VD3-full-1", checks=passed, title="phase c, 90 %, 0 deg"),
-        make_test("VD3-full-2", checks=failed, title="phase c, 90 %, 90 deg", scenario=turned),
-        make_test("marginal", checks=marginal),
-        make_test("unjudged", checks=unjudged),
-        make_test("late", checks=failed, title="órbita"),
-        make_test("harmonics", checks=(*passed, Verdict(check="harmonics", status=Status.NOT_APPLICABLE))),
-    ]
-    return make_results(*tests)
-
-
-@pytest.fixture(scope="module")
-def page(results):
-    """Its page, without figures."""
-    return html.render(results, {})
-
-
-def _in_language(results, language):
-    return results.model_copy(update={"report": ReportDetails(language=language)})
-
-
-def _shown(page, selector):
-    """Texts of what is seen of a selector."""
-    return [" ".join(e.inner_text().split()) for e in page.query_selector_all(selector) if e.is_visible()]
-
-
-def _beyond_the_window(page):
-    """What reaches beyond the right edge, where it is cut; the matrix scrolls in its box."""
-    return page.evaluate("""() => [...document.querySelectorAll('main *, header *')]
-        .filter((e) => e.checkVisibility() && !e.closest('.wide, .unseen, .live, svg'))
-        .filter((e) => e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.outerHTML.slice(0, 80))""")
 
 
 def _wider_than_itself(page):
@@ -103,13 +51,13 @@ def test_nothing_is_wider_than_the_window(visit, results, make_drawing, options,
     """
     first = results.tests[0]
     drawings = {first.key: make_drawing(first)} if language == "en" else {}
-    seen = visit(html.render(_in_language(results, language), drawings), "#test-1", **options)
+    seen = visit(html.render(in_language(results, language), drawings), "#test-1", **options)
     if drawings:
         seen.evaluate("document.querySelector('.plot').scrollIntoView()")
         seen.wait_for_selector(".figures .main-svg")
     assert seen.evaluate("document.documentElement.scrollWidth") <= seen.viewport_size["width"]
     assert _wider_than_itself(seen) == []
-    assert _beyond_the_window(seen) == []
+    assert beyond_the_window(seen) == []
     assert seen.locator(".badge").count() > 20
     assert _broken(seen) == []
     assert _cut(seen) == []
@@ -120,10 +68,10 @@ def test_nothing_is_wider_than_the_window(visit, results, make_drawing, options,
 def test_on_a_phone_one_symbol_stands_for_runs_of_one_row(visit, page):
     """The worst of them, until they are unfolded; what it stands for is said above."""
     seen = visit(page, **PHONE)
-    assert [text.split() for text in _shown(seen, "#row-1 > *")][:3] == [["VD3-full", "+"], ["✗"], ["✗"]]
-    assert "The worst of their symbols" in _shown(seen, ".legend")[0]
+    assert [text.split() for text in seen_of(seen, "#row-1 > *")][:3] == [["VD3-full", "+"], ["✗"], ["✗"]]
+    assert "The worst of their symbols" in seen_of(seen, ".legend")[0]
     seen.click("#row-1 .opens")
-    assert [text for text in _shown(seen, ".signs .run td:nth-child(2)")] == ["✓", "✗"]
+    assert [text for text in seen_of(seen, ".signs .run td:nth-child(2)")] == ["✓", "✗"]
 
 
 def test_on_paper_the_matrix_fits(visit, page):
@@ -132,7 +80,7 @@ def test_on_paper_the_matrix_fits(visit, page):
     seen.emulate_media(media="print")
     assert seen.evaluate("document.querySelector('.signs').getBoundingClientRect().right") <= A4_PX
     assert seen.evaluate("document.documentElement.scrollWidth") <= A4_PX
-    assert len(_shown(seen, ".signs thead th")) == 2 + len(CHECKS) + 1
+    assert len(seen_of(seen, ".signs thead th")) == 2 + len(CHECKS) + 1
 
 
 def test_the_first_column_and_the_headings_stay(visit, page):
@@ -148,110 +96,6 @@ def test_the_first_column_and_the_headings_stay(visit, page):
         const row = document.querySelector('.signs tbody:last-child th').getBoundingClientRect();
         return [head.left - box.left, head.top - box.top, row.left - box.left]; }""")
     assert corner == pytest.approx([0, 0, 0], abs=2)
-
-
-FILTERS = {
-    "failed": {"VD3-full-2", "late"},
-    "marginal": {"marginal"},
-    "unjudged": {"unjudged"},
-    "all": {"VD3-full-1", "VD3-full-2", "marginal", "unjudged", "late", "harmonics"},
-}
-
-
-def _tests_shown(page):
-    return {e.get_attribute("data-test") for e in page.query_selector_all("section.test") if e.is_visible()}
-
-
-def _rows_shown(page):
-    return {text.split()[0] for text in _shown(page, ".signs tbody .test-name")}
-
-
-def test_a_filter_holds_in_all_places(visit, page):
-    """Sections, matrix and contents show the same tests; how many is told aloud, and the address keeps it."""
-    seen = visit(page)
-    for status, wanted in FILTERS.items():
-        seen.check(f"[name=status][value={status}]", force=True)
-        assert _tests_shown(seen) == wanted
-        assert {text.split()[-1] for text in _shown(seen, ".contents .tests li")} == wanted
-        assert _rows_shown(seen) == {name.removesuffix("-1").removesuffix("-2") for name in wanted}
-        assert seen.inner_text("output[aria-live=polite]") == f"Tests shown: {len(wanted)} of 6"
-    seen.check("[name=status][value=failed]", force=True)
-    seen.reload()
-    assert _tests_shown(seen) == FILTERS["failed"]
-
-
-def test_what_is_known_is_filtered_from_what_is_new_or_worse(visit, results, page):
-    """With a baseline there is a filter more, also on a phone, where nothing reaches beyond the window."""
-    known = f"{results.tests[1].key} ride_through fail -0.2 pu # {EVIL}"
-    lost = f"{results.tests[2].key} overfrequency_power pass +0.5 pu"
-    seen = visit(html.render(held(results, known, lost), {}), "#status=news", **PHONE)
-    assert _tests_shown(seen) == {"marginal", "late"}
-    assert _beyond_the_window(seen) == []
-    assert EVIL in seen.text_content("[aria-labelledby=baseline]")
-    assert _tests_shown(visit(page, "#status=news")) == FILTERS["all"]  # none without a baseline
-
-
-def test_check_and_text_filter_too(visit, page):
-    """A check shows the tests in which it was judged, or failed; accents and capitals do not matter to a text."""
-    seen = visit(page)
-    seen.select_option("[name=check]", "ride_through")
-    seen.check("[name=status][value=failed]", force=True)
-    assert _tests_shown(seen) == {"VD3-full-2", "late"}
-    seen.fill("[name=text]", "ORBITA")
-    assert _tests_shown(seen) == {"late"}
-    assert seen.evaluate("location.hash") == "#status=failed&check=ride_through&text=ORBITA"
-    seen.click("button[type=reset]")
-    assert _tests_shown(seen) == FILTERS["all"]
-    assert visit(page, "#text=nothing%20like%20it").inner_text(".shown") == "Tests shown: 0 of 6"
-
-
-def test_failures_are_one_click_away(visit, page):
-    """From the first page to the first failure, from there to the next and back to its row in the matrix."""
-    seen = visit(page)
-    place = "(id) => Math.abs(document.getElementById(id).getBoundingClientRect().top) < innerHeight / 2"
-    for link, target in (("first failure", "test-2"), ("Next failure", "test-5"), ("Previous failure", "test-2")):
-        here = seen.evaluate("location.hash").removeprefix("#")
-        scope = seen.locator(f"section[aria-labelledby={here}]" if here else "header")
-        scope.get_by_role("link", name=link).click()
-        seen.wait_for_function(place, arg=target)
-    seen.locator("section[aria-labelledby=test-2]").get_by_role("link", name="Back to the matrix").click()
-    seen.wait_for_function(place, arg="row-1")
-
-
-def test_a_link_leads_to_what_the_filter_hides(visit, page):
-    """A link to a test that is filtered out takes the filter away."""
-    seen = visit(page, "#status=marginal")
-    assert _tests_shown(seen) == {"marginal"}
-    seen.evaluate("location.hash = 'test-5'")
-    seen.wait_for_function("document.querySelector('[data-test=late]').checkVisibility()")
-    assert _tests_shown(seen) == FILTERS["all"]
-
-
-def test_runs_of_one_sag_open(visit, page):
-    """They stand in one row with the symbol of each; a button shows them one by one."""
-    seen = visit(page)
-    assert [text.split() for text in _shown(seen, "#row-1 > *")][:3] == [["VD3-full", "1", "2", "+"], ["✓✗"], ["✓✗"]]
-    assert not _shown(seen, ".signs .run")
-    seen.focus("#row-1 .opens")
-    seen.keyboard.press("Enter")
-    assert seen.get_attribute("#row-1 .opens", "aria-expanded") == "true"
-    assert _shown(seen, ".signs .run .test-name") == ["VD3-full-1", "VD3-full-2"]
-    assert "90°" in _shown(seen, ".signs .run .what")[1]
-
-
-def test_the_keyboard_reaches_all(visit, page):
-    """The first stop leads past the first page, arrows move the filter, and what has the focus is seen to have it."""
-    seen = visit(page)
-    seen.keyboard.press("Tab")
-    assert seen.evaluate("document.activeElement.className") == "skip"
-    assert seen.evaluate("document.activeElement.getBoundingClientRect().left") >= 0
-    seen.focus("[name=status][value=all]")
-    seen.keyboard.press("ArrowRight")
-    assert _tests_shown(seen) == FILTERS["failed"]
-    assert seen.evaluate("getComputedStyle(document.querySelector(':focus-visible + span')).outlineStyle") == "solid"
-    for selector in (".tools select", ".tools [type=search]", ".theme", ".signs a", ".opens"):
-        seen.focus(selector)
-        assert seen.evaluate("getComputedStyle(document.activeElement).outlineStyle") == "solid"
 
 
 CONTRAST = """() => {
@@ -304,10 +148,10 @@ def test_light_and_dark(visit, page):
 def test_without_javascript(visit, page):
     """All is there to be read and no control stands about that does nothing."""
     seen = visit(page, java_script_enabled=False)
-    assert _tests_shown(seen) == FILTERS["all"]
-    assert not _shown(seen, "button, select, input")
-    assert len(_shown(seen, ".signs tbody tr")) == 5
-    assert "VD3-full 1 2" in _shown(seen, ".signs tbody .test-name")
+    assert seen_tests(seen) == FILTERS["all"]
+    assert not seen_of(seen, "button, select, input")
+    assert len(seen_of(seen, ".signs tbody tr")) == 5
+    assert "VD3-full 1 2" in seen_of(seen, ".signs tbody .test-name")
 
 
 def test_printing_loses_nothing(visit, results, make_drawing):

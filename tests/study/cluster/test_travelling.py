@@ -1,5 +1,6 @@
 """How what a job needs comes to a worker that shares no disk: here the worker is this process."""
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -90,6 +91,17 @@ def test_the_same_files_at_the_same_place_do_as_well(project):
     assert worker.receive("run", parcel) == ""
     (project / "own.py").write_text(CONTROLLER + "# another\n")
     assert "its digest is" in worker.receive("run", parcel)
+
+
+def test_a_parameter_out_of_its_range_is_as_allowed_there_as_here():
+    """What the worker opens anew is opened with the same leave, and every run of it, too."""
+    own = Path(__file__).resolve().parents[3] / "examples" / "program-python" / "controller.py"
+    given = {"controller": f'stdio:"{sys.executable}" "{own}"', "settings": ["controller.reactive_gain=12"]}
+    assert worker.receive("run", _parcel(**given, allow_out_of_range=True)) == ""
+    (finished,) = worker.run_unit("run", 0).finished
+    assert finished.result.status != "error"
+    with pytest.raises(UsageError, match="12 is out of range; 0 to 10 is allowed"):
+        open_controller(make_job(Asked(profiles=["iec61400-21"], sag="50%", **given)))
 
 
 def test_a_class_of_this_process_is_refused():

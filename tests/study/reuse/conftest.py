@@ -1,13 +1,17 @@
 """Records that are made up, and a store to keep them in."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from reused import DEFAULTS, RECORD, SCENARIO, Controller
 
 from pvlvrt_compliance.study.reuse import store as store_module
+from pvlvrt_compliance.study.reuse.key import surroundings_digest
 from pvlvrt_compliance.study.reuse.record_file import Kept
+from pvlvrt_compliance.study.reuse.simulator import ReusingSimulator
 from pvlvrt_compliance.study.reuse.store import RecordStore
 from pvlvrt_compliance.waveforms import Segment, Waveforms
 
@@ -40,3 +44,35 @@ def made() -> Callable[..., Kept]:
 def store(tmp_path: Path) -> RecordStore:
     """A store with room enough."""
     return RecordStore(tmp_path / "records", 10**9)
+
+
+@pytest.fixture
+def simulated(store: RecordStore) -> Callable[..., int]:
+    """How many simulations a run needs: ``simulated(scenario, parameters, controller) -> 0 or 1``."""
+
+    def simulated(scenario=SCENARIO, parameters=DEFAULTS, controller=None, during=lambda: None):
+        calls = []
+        surroundings_digest.cache_clear()  # another process
+
+        def simulate(*of):
+            calls.append(of)
+            during()
+            return RECORD
+
+        found = ReusingSimulator(simulate, controller, store)(scenario, parameters)
+        assert [x.tolist() for x in found.segments[0].channels.values()] == [[0.0, 1.0, 2.0, 3.0]]
+        return len(calls)
+
+    return simulated
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Controller:
+    """A controller of the user's own, with a mapping that lists files."""
+    (tmp_path / "lib").mkdir()
+    for name in ("gains.csv", "lib/a.py", "lib/b.py"):
+        (tmp_path / name).write_text("1")
+    mapping = tmp_path / "ctrl.mapping.toml"
+    mapping.write_text('files = ["gains.csv", "lib/*.py"]\n')
+    controller = Controller()
+    return replace(controller, description=replace(controller.description, mapping=str(mapping)))

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from pvlvrt_compliance.errors import UsageError
 from pvlvrt_compliance.study.job import LOCAL
+from pvlvrt_compliance.texts import one_line
 
 Client = Any
 """Of dask.distributed, which need not be there: a client of a scheduler."""
@@ -67,12 +68,17 @@ def connected(address: str, workers: int) -> Iterator[Client]:
         # Of versions, which `identity` compares, and of the size of what is sent.
         warnings.simplefilter("ignore")
         target = stack.enter_context(_local(workers)) if address == LOCAL else address
-        client = _client(target, f"cluster {address}")
+        client = _client(target, named(address))
         try:
             yield client
         finally:
             with suppress(Exception):  # the scheduler may have gone
                 client.close(timeout=_CLOSING_S)
+
+
+def named(address: str) -> str:
+    """How a message names a cluster: by its address, which is typed, on one line."""
+    return f"cluster {one_line(address)}"
 
 
 def _client(target: Any, named: str) -> Client:

@@ -3,6 +3,8 @@
 import os
 import pickle
 import queue
+import re
+import zlib
 from collections import deque
 from collections.abc import Callable, Generator, Iterator
 from contextlib import suppress
@@ -12,6 +14,8 @@ from typing import Any
 from uuid import uuid4
 
 from pvlvrt_compliance.errors import LostError, UsageError
+from pvlvrt_compliance.results import TestResult
+from pvlvrt_compliance.results.files import WAVEFORMS
 from pvlvrt_compliance.study.executors.arranging import Arranged
 from pvlvrt_compliance.study.executors.cluster import worker as there
 from pvlvrt_compliance.study.executors.cluster.connecting import (
@@ -24,11 +28,13 @@ from pvlvrt_compliance.study.executors.cluster.connecting import (
 from pvlvrt_compliance.study.executors.cluster.luggage import Parcel
 from pvlvrt_compliance.study.executors.executor import Finished
 from pvlvrt_compliance.study.timing import FIXED_TIME
+from pvlvrt_compliance.texts import one_line, printable
 
 _LOOK_S = 0.5  # from one look at who is there to the next
 _ANSWER_S = 30.0  # for a scheduler that lives to answer
 _COMING_S = 60.0  # for a first worker to come, unless dask's own settings say how long
 _OTHERS_S = 5.0  # for one that can be used to come after one that cannot
+_RECORD = re.compile(rf"{WAVEFORMS}/(?!\.)[^/\\\0]+")
 _AHEAD = 2  # units that a worker has at a time: it never waits for the next
 
 
@@ -227,8 +233,13 @@ class Dispatch:
         if ran is None or ran.failed:
             yield from self._gone_wrong(unit, f"worker {address}: {ran.failed if ran else outcome.error}")
             return
-        for finished in ran.finished:
-            yield from self._arranged.finished(_as_here(finished))
+        try:
+            arrived = [_as_here(finished) for finished in ran.finished]
+        except (ValueError, zlib.error) as error:
+            yield from self._gone_wrong(unit, f"worker {address}: what it sends is no result: {one_line(str(error))}")
+            return
+        for finished in arrived:
+            yield from self._arranged.finished(finished)
         yield from self._arranged.ended(unit, ran.ended)
 
     def _lose(self, address: str, *, is_gone: bool) -> Iterator[Finished]:
@@ -255,11 +266,23 @@ class Dispatch:
 
 
 def _as_here(finished: Finished) -> Finished:
-    """A test as it would be of this process: whether time is fixed is for this one to say."""
-    result, files = finished.result, there.unpressed(finished.files)
+    """A test as it would be of this process: its texts pass `texts` here, too, and whether time is fixed is said here.
+
+    Raises
+    ------
+    ValueError
+        When it is none, or a record of it would lie elsewhere than records do.
+    zlib.error
+        When a record is not packed as it is sent.
+    """
+    result = TestResult.model_validate(finished.result.model_dump())
+    for name in finished.files:
+        if not _RECORD.fullmatch(name):
+            raise ValueError(f"{name!r} is no name of a record")
+    files = there.unpressed(finished.files)
     if FIXED_TIME in os.environ:
         result = result.model_copy(update={"wall_time_s": 0.0})
-    return finished._replace(result=result, files=files)
+    return finished._replace(result=result, files=files, notes=[*map(printable, finished.notes)])
 
 
 class _Call:

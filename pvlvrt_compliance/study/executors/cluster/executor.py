@@ -4,7 +4,7 @@ from collections.abc import Callable, Generator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from pvlvrt_compliance.study.executors.arranging import Arranged
-from pvlvrt_compliance.study.executors.cluster.connecting import connected
+from pvlvrt_compliance.study.executors.cluster.connecting import connected, named
 from pvlvrt_compliance.study.executors.cluster.dispatch import Dispatch
 from pvlvrt_compliance.study.executors.cluster.luggage import packed
 from pvlvrt_compliance.study.executors.executor import Finished
@@ -59,7 +59,7 @@ class Cluster(NamedTuple):
                 len(units),
                 begins=begins_unit,
                 tell=self.tell,
-                named=f"cluster {self.address}",
+                named=named(self.address),
             )
             try:
                 yield from dispatch.run()

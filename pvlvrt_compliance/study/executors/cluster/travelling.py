@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from pvlvrt_compliance.errors import UsageError
+from pvlvrt_compliance.ordinary_file import is_there
 from pvlvrt_compliance.study.job import Job
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ class Travelling(NamedTuple):
         As the user has named it, and its mapping file.
     given : mapping
         Its parameters, as far as they are set.
+    allow_out_of_range : bool
+        Whether they may be out of the ranges that it states.
     digest : str
         That it must have there.
     beside : str
@@ -40,6 +43,7 @@ class Travelling(NamedTuple):
     spec: str
     mapping: str | None
     given: "Mapping[str, Value]"
+    allow_out_of_range: bool
     digest: str
     beside: str
     sent_spec: str = ""
@@ -62,6 +66,7 @@ def travelling(controller: "ForeignSimulator", job: Job) -> Travelling:
         spec=controller.spec,
         mapping=job.mapping,
         given=job.given,
+        allow_out_of_range=job.allow_out_of_range,
         digest=controller.description.digest,
         beside=str(Path.cwd()),
     )
@@ -74,7 +79,7 @@ def _sent(own: Travelling, description: "Description") -> Travelling:
     file, rest = (name, colon + rest) if Path(name).suffix == _PYTHON else (own.spec, "")
     listed = _listed(description.mapping)
     own_mapping = (description.mapping,) if description.mapping else ()
-    if not Path(file).is_file():
+    if not is_there(Path(file)):
         return own._replace(why_not=description.besides)
     if description.besides and Path(file).suffix != _PYTHON and not (listed and description.may_be_listed):
         said = "list all that it is made of in its mapping (files = [...])" * description.may_be_listed

@@ -107,7 +107,12 @@ def _tried(
     from pvlvrt_compliance.controllers.simulator import ForeignSimulator
 
     try:
-        controller = ForeignSimulator(spec, own.given, mapping, beside=beside, parameters=parameters)
+        controller = ForeignSimulator(
+            *(spec, own.given, mapping),
+            beside=beside,
+            parameters=parameters,
+            allow_out_of_range=own.allow_out_of_range,
+        )
     except UsageError as error:
         return str(error).removeprefix(f"--controller {spec}: ")
     except PvlvrtError as error:
