@@ -100,6 +100,11 @@ def is_within(path: Path, folder: Path) -> bool:
         return False
 
 
+def real(path: Path) -> Path:
+    """A path with its links resolved, as far as they lead anywhere: `Path.resolve` raises where they lead round."""
+    return Path(os.path.realpath(path))
+
+
 def is_there(file: Path) -> bool:
     """Whether this is a file, as far as that can be seen: no text is too long to be asked for as a name."""
     try:

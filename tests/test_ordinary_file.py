@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from pvlvrt_compliance.ordinary_file import NotOrdinaryError, TooLargeError, content_of, is_within, kind_of
+from pvlvrt_compliance.ordinary_file import NotOrdinaryError, TooLargeError, content_of, is_within, kind_of, real
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="pipes, devices and links of POSIX")
 
@@ -116,3 +116,13 @@ def test_links_that_lead_round(folder):
 def test_a_kind_in_words():
     """An ordinary file is nothing to be told."""
     assert (kind_of(0o100644), kind_of(0o040755), kind_of(0)) == (None, "a folder", "not an ordinary file")
+
+
+@posix
+def test_links_that_lead_round_lead_nowhere(tmp_path):
+    """They are resolved as far as that goes, and whoever opens them is told by the system."""
+    loop = tmp_path / "loop"
+    loop.symlink_to(loop)
+    assert real(loop) == loop
+    (tmp_path / "link").symlink_to(tmp_path / "file")
+    assert real(tmp_path / "link") == (tmp_path / "file").resolve()

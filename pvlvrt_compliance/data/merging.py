@@ -18,6 +18,7 @@ from pvlvrt_compliance.data.search_path import (
 )
 from pvlvrt_compliance.data.syntax import Table
 from pvlvrt_compliance.errors import ProfileError, did_you_mean
+from pvlvrt_compliance.ordinary_file import real
 
 PROFILE = Kind("a profile", "profiles", ProfileError)
 
@@ -121,11 +122,11 @@ def merge_file(
     """
     known = {} if known is None else known
     source = Source(path, PROFILE, origin_of(path))
-    here = path.resolve()
+    here = real(path)
     merged = Merged((), {}, {}, ())
     for index, name in enumerate(_includes_of(source)):
         included = _included(name, source, index)
-        resolved = included.resolve()
+        resolved = real(included)
         if resolved in (*chain, here):
             raise source.refusal((("include", index), _loop((*chain, here), resolved)))
         too_deep = len(chain) + 1 >= MOST_FILES

@@ -52,6 +52,7 @@ def update(
     from pvlvrt_compliance.cli.settled import settled
     from pvlvrt_compliance.cli.writing import write_over
     from pvlvrt_compliance.errors import unwritable
+    from pvlvrt_compliance.ordinary_file import real
     from pvlvrt_compliance.results.files import BASELINE, FOLDER
     from pvlvrt_compliance.study.baseline.files import update_file
 
@@ -65,7 +66,7 @@ def update(
     )
     if done.is_changed and not check:
         try:
-            write_over(done.file.resolve(), done.content)  # where a link leads: it stays one
+            write_over(real(done.file), done.content)  # where a link leads: it stays one
         except OSError as error:
             raise unwritable(f"{done.file}: cannot be written ({error.strerror})", error) from None
     for line in done.said:

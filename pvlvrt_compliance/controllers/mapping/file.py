@@ -21,7 +21,7 @@ from pvlvrt_compliance.data.positions import Location, Places
 from pvlvrt_compliance.data.reader import Kind, Source
 from pvlvrt_compliance.data.syntax import Table
 from pvlvrt_compliance.errors import listed
-from pvlvrt_compliance.ordinary_file import is_there
+from pvlvrt_compliance.ordinary_file import is_there, real
 from pvlvrt_compliance.texts import shortened
 
 Sign = Literal[1, -1]
@@ -235,7 +235,7 @@ def _in_folder(folder: Path, name: str) -> list[Path]:
         files = [file for file in folder.glob(name) if file.is_file()]
     except OSError as error:  # a name that is too long
         raise ValueError(f"{shortened(name, _SHOWN)} cannot be looked for: {error.strerror or error}") from None
-    outside = [file for file in files if not file.resolve().is_relative_to(folder.resolve())]
+    outside = [file for file in files if not real(file).is_relative_to(folder.resolve())]
     if outside:
         raise ValueError(f"{outside[0].relative_to(folder)} is a link to a file outside of the folder of the mapping")
     if not files:
