@@ -123,3 +123,15 @@ class Stopped(BaseException):
     def __init__(self, number: int = signal.SIGINT) -> None:
         super().__init__(number)
         self.number = number
+
+
+def stop_behind(error: BaseException) -> BaseException | None:
+    """The signal or Ctrl-C that an exception is, or that it came in the place of; None of an error.
+
+    A signal is raised wherever Python is just at, in the middle of its own locks, too: what unwinds them then raises
+    errors of its own ("release unlocked lock" of `threading`), which are none of the program.
+    """
+    met: BaseException | None = error
+    while met is not None and not isinstance(met, (KeyboardInterrupt, Stopped)):
+        met = met.__cause__ or met.__context__
+    return met

@@ -24,8 +24,8 @@ from pvlvrt_compliance.cli.schema import schema
 from pvlvrt_compliance.cli.telling import say_aside, tell
 from pvlvrt_compliance.cli.typed import last_of_each_flag, read_what_is_given, understood
 from pvlvrt_compliance.compiled.notes import tell_in_lines
-from pvlvrt_compliance.controllers.process.command import STOPS, become_the_command, leave, status_of, words_of
-from pvlvrt_compliance.errors import PvlvrtError, UnfinishedError
+from pvlvrt_compliance.controllers.process.command import become_the_command, leave, status_of, words_of
+from pvlvrt_compliance.errors import PvlvrtError, UnfinishedError, stop_behind
 
 USAGE_STATUS = 2
 CRASHED_STATUS = 3
@@ -82,12 +82,15 @@ def _run(arguments: Sequence[str]) -> int:
         return _complain(error.format_message())
     except (PvlvrtError, OSError) as error:
         return _complain_of(error)
-    except (typer.Abort, *STOPS) as end:
-        tell(words_of(end))
-        return status_of(end)
     except SystemExit:
         # rich and typer end the program so when the reader of stdout has gone (for instance `| head`).
         return 0
+    except BaseException as end:
+        stop = end if isinstance(end, typer.Abort) else stop_behind(end)
+        if stop is None:
+            raise
+        tell(words_of(stop))
+        return status_of(stop)
     return status if isinstance(status, int) else 0
 
 
@@ -128,16 +131,21 @@ def main() -> None:
     become_the_command()
     try:
         status = flushed(run(sys.argv[1:]))
-    except Exception:
-        # Python's own status for a crash is 1, which means here that a check failed.
-        import traceback
-
-        with suppress(OSError), guarded():
-            say_aside(traceback.format_exc().removesuffix("\n"))
-        status = CRASHED_STATUS
-    except STOPS as end:
-        status = status_of(end)
+    except BaseException as end:
+        status = _ended_by(end)
     leave(status)
+
+
+def _ended_by(end: BaseException) -> int:
+    """Say what has gone wrong in the program itself, and only that: of a signal the status says all."""
+    if stop := stop_behind(end):
+        return status_of(stop)
+    # Python's own status for a crash is 1, which means here that a check failed.
+    import traceback
+
+    with suppress(OSError), guarded():
+        say_aside("".join(traceback.format_exception(end)).removesuffix("\n"))
+    return CRASHED_STATUS
 
 
 def _complain_of(error: PvlvrtError | OSError) -> int:

@@ -9,8 +9,8 @@ from pvlvrt_compliance.cli.progress import progress_bar
 from pvlvrt_compliance.cli.publishing import publish
 from pvlvrt_compliance.cli.showing import log, show
 from pvlvrt_compliance.cli.telling import tell
-from pvlvrt_compliance.controllers.process.command import STOPS, status_of, words_of
-from pvlvrt_compliance.errors import OutputError
+from pvlvrt_compliance.controllers.process.command import status_of, words_of
+from pvlvrt_compliance.errors import OutputError, stop_behind
 from pvlvrt_compliance.output import fields_of, output_in, report_details
 from pvlvrt_compliance.report import console
 from pvlvrt_compliance.results import Results, exit_status
@@ -86,9 +86,9 @@ def stopped(end: BaseException) -> int | None:
         The exit status where it was stopped; None of an error, which goes on its way.
     """
     said = _last_words(end)
-    if said and isinstance(end, STOPS):
-        log(f"{words_of(end)}; {said}")
-        return status_of(end)
+    if said and (stop := stop_behind(end)):
+        log(f"{words_of(stop)}; {said}")
+        return status_of(stop)
     if said:
         log(f"stopped by an error of the program; {said}")
     return None

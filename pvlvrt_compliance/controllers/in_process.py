@@ -110,8 +110,8 @@ def _ending_as_asked(stop: Callable[[], None]) -> Iterator[None]:
     before = sys.unraisablehook
 
     def met_unraisable(unraisable: "sys.UnraisableHookArgs") -> None:
-        if unraisable.exc_value is not None and ending.is_from_outside(unraisable.exc_value):
-            ending.keep(unraisable.exc_value)
+        if unraisable.exc_value is not None and (end := ending.from_outside(unraisable.exc_value)):
+            ending.keep(end)
             stop()
         else:
             before(unraisable)
@@ -120,7 +120,7 @@ def _ending_as_asked(stop: Callable[[], None]) -> Iterator[None]:
     try:
         yield
     except BaseException as error:
-        met = error if ending.is_from_outside(error) else ending.take()
+        met = ending.from_outside(error) or ending.take()
         if met is None:
             raise
     else:

@@ -1,7 +1,8 @@
 """The command as a program, made to say where it is and to wait there: ``python paused.py PLACE ARGUMENTS...``.
 
 A number is the test before which it says `here` and waits for ever. `compiled` is inside the compiled loop of the first
-simulation, which says `here` when it is about to begin, and `over` when it has ended. With `twice` and `thrice` it
+simulation, which says `here` when it is about to begin, and `over` when it has ended. `lock` is where Python takes a
+lock back, which a signal leaves without it. With `twice` and `thrice` it
 waits before the third test, and the SIGTERM that ends it comes again, so many times in all, while it keeps what is
 finished.
 """
@@ -10,6 +11,7 @@ import math
 import signal
 import sys
 import threading
+from contextlib import ExitStack
 
 import pvlvrt_compliance.simulation.simulate as simulation
 import pvlvrt_compliance.study.run as study_run
@@ -32,6 +34,26 @@ def _wait_before(number):
             _say("here")
             threading.Event().wait()
         return right(*arguments)
+
+    study_run.run_test = run_test
+
+
+def _wait_for_a_lock():
+    class Lock:
+        """As Python's own of a condition that is waited for."""
+
+        def __enter__(self):
+            _say("here")
+            threading.Event().wait()
+
+        def __exit__(self, *_):
+            raise RuntimeError("release unlocked lock")
+
+    def run_test(*_):
+        with ExitStack() as stack:
+            lock = Lock()
+            stack.push(lock)
+            lock.__enter__()
 
     study_run.run_test = run_test
 
@@ -65,6 +87,8 @@ if __name__ == "__main__":
     place = sys.argv.pop(1)
     if place == "compiled":
         _tell_of_simulation()
+    elif place == "lock":
+        _wait_for_a_lock()
     elif place in ("twice", "thrice"):
         _disturb_keeping(2 if place == "twice" else 3)
     else:

@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from pvlvrt_compliance.cli import main
 from pvlvrt_compliance.controllers.process.family import FORKS, descendants
+from pvlvrt_compliance.errors import Stopped
 from pvlvrt_compliance.report.formats import html
 from pvlvrt_compliance.study.store import OutputFolder
 from waiting import PATIENCE_S, wait_until
@@ -120,6 +122,36 @@ def test_interrupted_inside_the_compiled_loop(paused, folder, number, status, wo
     process.send_signal(number)
     assert ended(process) == (status, "", f"{word}; 0 of 1 tests were finished, nothing was written\n")
     assert [p.name for p in folder.iterdir()] == ["report.html"]
+
+
+@POSIX
+@ENDS
+def test_interrupted_while_a_lock_is_taken(paused, folder, number, status, word):
+    """Python's own error about that lock, which replaces the signal, is no error of the program."""
+    process = paused("lock", *MAIN, "--output", folder)
+    process.send_signal(number)
+    assert ended(process) == (status, "", f"{word}; 0 of 1 tests were finished, nothing was written\n")
+
+
+@POSIX
+@pytest.mark.parametrize("command", [("profiles", "list"), ("--version",)])
+def test_an_error_that_a_signal_leaves_behind_is_no_crash(command, monkeypatch, capsys):
+    """Wherever it comes, and whatever has replaced it."""
+
+    def flushed(*_):
+        try:
+            raise Stopped(signal.SIGTERM)
+        finally:
+            raise RuntimeError("release unlocked lock")
+
+    left = []
+    monkeypatch.setattr(main, "flushed", flushed)
+    monkeypatch.setattr(main, "become_the_command", lambda: None)
+    monkeypatch.setattr(main, "leave", left.append)
+    monkeypatch.setattr(sys, "argv", ["pvlvrt-check", *command])
+    main.main()
+    assert left == [143]
+    assert "Traceback" not in capsys.readouterr().err
 
 
 @POSIX

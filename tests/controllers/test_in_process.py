@@ -146,6 +146,20 @@ def test_a_signal_that_comes_between_two_samples():
             SimulatorHere(Sending)(SCENARIO, QUICK)
 
 
+@pytest.mark.parametrize("where", ["step", "reset", "signals"])
+def test_ctrl_c_in_the_middle_of_a_lock(where):
+    """What unwinds it raises an error of its own (`release unlocked lock`), which is not the controller's."""
+
+    def unwinds(*_):
+        try:
+            raise KeyboardInterrupt("now")
+        finally:
+            raise RuntimeError("release unlocked lock")
+
+    with pytest.raises(KeyboardInterrupt, match="now"):
+        SimulatorHere(type("Locking", (Small,), {where: unwinds}))(SCENARIO, QUICK)
+
+
 def test_ctrl_c_as_it_is_made():
     """It comes through then, too."""
     with pytest.raises(KeyboardInterrupt):

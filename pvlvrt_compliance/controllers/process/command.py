@@ -18,10 +18,6 @@ from pvlvrt_compliance.errors import Stopped
 _PATIENCE_S = 1.0  # with what has been told to end
 
 
-STOPS = (KeyboardInterrupt, Stopped)
-"""Ways in which a command is ended early."""
-
-
 def status_of(end: BaseException) -> int:
     """Exit status of a command that was ended early: 130, by SIGTERM 143."""
     return 128 + (end.number if isinstance(end, Stopped) else signal.SIGINT)

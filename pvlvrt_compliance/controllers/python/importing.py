@@ -15,7 +15,7 @@ from pvlvrt_compliance.controllers.process.command import is_the_server
 from pvlvrt_compliance.controllers.spelling import SUFFIX, names_module
 from pvlvrt_compliance.errors import did_you_mean
 from pvlvrt_compliance.ordinary_file import is_there
-from pvlvrt_compliance.simulation.door.ending import is_from_outside, is_of_the_debugger
+from pvlvrt_compliance.simulation.door.ending import from_outside, is_of_the_debugger
 
 _OF_A_PACKAGE = "__init__.py"
 _TRACEBACK_LINES = 6
@@ -51,8 +51,9 @@ def class_in(place: str, name: str) -> Found:
 
 def let_pass(error: BaseException) -> None:
     """Raise again what ends a run from outside; in the process of a controller all that is raised is its own."""
-    if is_from_outside(error) and not is_the_server():
-        raise error
+    end = None if is_the_server() else from_outside(error)
+    if end is not None:
+        raise end
 
 
 def tail(error: BaseException) -> str:

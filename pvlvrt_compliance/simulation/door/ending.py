@@ -7,7 +7,7 @@ whoever began the run takes it.
 import sys
 import threading
 
-from pvlvrt_compliance.errors import Stopped
+from pvlvrt_compliance.errors import stop_behind
 
 
 class _Met(threading.local):
@@ -17,9 +17,9 @@ class _Met(threading.local):
 _met = _Met()
 
 
-def is_from_outside(error: BaseException) -> bool:
-    """Whether an exception is none that a controller has made of its own: Ctrl-C, a signal, or a debugger's."""
-    return isinstance(error, (KeyboardInterrupt, Stopped)) or is_of_the_debugger(error)
+def from_outside(error: BaseException) -> BaseException | None:
+    """What an exception is that no controller has made: Ctrl-C, a signal, or a debugger's; None of all others."""
+    return error if is_of_the_debugger(error) else stop_behind(error)
 
 
 def is_of_the_debugger(error: BaseException) -> bool:
@@ -30,8 +30,8 @@ def is_of_the_debugger(error: BaseException) -> bool:
 
 def keep(error: BaseException) -> None:
     """Keep what ends the run from outside for `take`; of everything else nothing is kept."""
-    if is_from_outside(error):
-        _met.end = error
+    if (end := from_outside(error)) is not None:
+        _met.end = end
 
 
 def take() -> BaseException | None:
