@@ -8,6 +8,7 @@ from itertools import pairwise
 
 from pvlvrt_compliance.disturbance.model import (
     Disturbance,
+    Fact,
     Jump,
     Moved,
     NormalVoltage,
@@ -16,7 +17,7 @@ from pvlvrt_compliance.disturbance.model import (
     Voltage,
     kind_of,
 )
-from pvlvrt_compliance.disturbance.words import facts_of, in_words, state_in_words, stretches_in_words
+from pvlvrt_compliance.disturbance.words import events_of, facts_of, in_words, state_in_words, stretches_in_words
 from pvlvrt_compliance.scenario.events import FrequencyRamp, FrequencyStep, Harmonic, PhaseJump, Recording
 from pvlvrt_compliance.scenario.scenario import Scenario
 from pvlvrt_compliance.scenario.timeline import Entry, entries, irradiance_points, sag_spans
@@ -38,7 +39,7 @@ def disturbance_asked(scenario: Scenario, normal: NormalVoltage) -> Disturbance:
     normal : NormalVoltage
         What is a sag or a swell, and what is neither.
     """
-    table = entries(scenario)
+    table, events = entries(scenario), events_of(scenario)
     steps = _steps(scenario, table)
     voltage_steps_s = [step.at_s for step in steps if "voltage" in step.moved]
     irradiance = irradiance_points(scenario)
@@ -50,11 +51,11 @@ def disturbance_asked(scenario: Scenario, normal: NormalVoltage) -> Disturbance:
         normal=normal,
         steps=steps,
         jumps=tuple(_jumps(table, [step.at_s for step in steps if "angle" in step.moved])),
-        stretches=tuple(_stretches(scenario, table, [step.at_s for step in steps], normal)),
+        stretches=tuple(_stretches(scenario, table, [step.at_s for step in steps], normal, events)),
         frequency_moves=any(isinstance(event, FrequencyStep | FrequencyRamp | Recording) for event in scenario.events),
         irradiance_w_m2=(irradiance[0][1], irradiance[-1][1]),
-        in_words=in_words(scenario),
-        facts=tuple(facts_of(scenario)),
+        in_words=in_words(scenario, events),
+        facts=tuple(facts_of(scenario, events)),
     )
 
 
@@ -132,13 +133,13 @@ def _jumps(table: list[Entry], instants_s: Sequence[float]) -> Iterator[Jump]:
 
 
 def _stretches(
-    scenario: Scenario, table: list[Entry], steps_s: list[float], normal: NormalVoltage
+    scenario: Scenario, table: list[Entry], steps_s: list[float], normal: NormalVoltage, events: Sequence[Fact]
 ) -> Iterator[Stretch]:
     last_s = max([scenario.end_s, *steps_s])
     bounds = list(dict.fromkeys([min([0.0, *steps_s]), *steps_s, last_s]))
     instants = [entry.t_s for entry in table]
     irradiance = _Irradiance(irradiance_points(scenario))
-    told = stretches_in_words(scenario, bounds[:-1])
+    told = stretches_in_words(scenario, events, bounds[:-1])
     played_from_s = _played_from_s(scenario)
     for (begin_s, end_s), in_words_of_what_begins in zip(pairwise(bounds), told, strict=True):
         entry = table[bisect_right(instants, begin_s) - 1]

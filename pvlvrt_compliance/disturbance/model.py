@@ -1,6 +1,7 @@
 """What the grid did in a record, as plain data: all that judges, draws or tells takes it from here and nowhere else."""
 
-from bisect import bisect_right
+import math
+from bisect import bisect_left, bisect_right
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, Literal
@@ -98,6 +99,8 @@ class Stretch(_Frozen):
 
     def cut(self, begin_s: float, end_s: float) -> "Stretch":
         """The part of the stretch between two instants (s); beyond its end it goes on as it ended."""
+        if (begin_s, end_s) == (self.begin_s, self.end_s):
+            return self
         last = None if self.voltage_at_end is None else self.voltage_at(min(end_s, self.end_s))
         moved = {"voltage": self.voltage_at(begin_s), "voltage_at_end": last} if last is not None else {}
         return self.model_copy(update={"begin_s": begin_s, "end_s": end_s, **moved})
@@ -145,10 +148,18 @@ class Disturbance(_Frozen):
         """Instants at which the voltage jumps, or begins or ends to move (s)."""
         return self.steps_of("voltage")
 
-    @property
+    @cached_property
     def angle_steps_s(self) -> tuple[float, ...]:
         """Instants at which an angle of the voltage is meant to jump (s)."""
         return self.steps_of("angle")
+
+    def jump_at(self, at_s: float) -> Jump:
+        """The jump of the angle at a step of it (s); raises KeyError where there is none."""
+        return self._jump_at[at_s]
+
+    @cached_property
+    def _jump_at(self) -> dict[float, Jump]:
+        return {jump.at_s: jump for jump in self.jumps}
 
     def stretch_at(self, t_s: float) -> Stretch:
         """The stretch that an instant lies in, its beginning included; before the first, the first."""
@@ -180,17 +191,26 @@ class Disturbance(_Frozen):
             for begin_s, until_s in pairwise((*(t for t in self.voltage_steps_s if t < end_s), end_s))
         )
 
-    def following_stretches(self, end_s: float) -> tuple[Stretch, ...]:
-        """What follows each step of anything from the start of the test on, the last to the end of the record (s)."""
-        begins_s = sorted({self.start_s, *(step.at_s for step in self.steps if step.at_s > self.start_s)})
+    def following_stretches(self, end_s: float, from_s: float = -math.inf) -> tuple[Stretch, ...]:
+        """What follows each step of anything from the start of the test on, the last to the end of the record (s).
+
+        Only what begins at ``from_s`` or later.
+        """
+        begins_s = self._following_s[bisect_left(self._following_s, from_s) : bisect_left(self._following_s, end_s)]
         return tuple(
-            self.stretch_at(begin_s).cut(begin_s, until_s)
-            for begin_s, until_s in pairwise((*(t for t in begins_s if t < end_s), end_s))
+            self.stretch_at(begin_s).cut(begin_s, until_s) for begin_s, until_s in pairwise((*begins_s, end_s))
         )
+
+    @cached_property
+    def _following_s(self) -> list[float]:
+        """The start of the test, and each step of anything after it (s)."""
+        return sorted({self.start_s, *(step.at_s for step in self.steps if step.at_s > self.start_s)})
 
     def is_frequency_steady(self, begin_s: float, end_s: float) -> bool:
         """Whether the frequency stays the same from one instant to another."""
-        seen = [part for part in self.stretches if part.end_s > begin_s and part.begin_s <= end_s]
+        first = max(bisect_right(self._begins_s, begin_s) - 1, 0)
+        near = self.stretches[first : bisect_right(self._begins_s, end_s)]
+        seen = [part for part in near if part.end_s > begin_s]
         return len({part.frequency_hz for part in seen}) == 1 and not any(part.rocof_hz_s for part in seen)
 
     @property

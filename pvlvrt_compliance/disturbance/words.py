@@ -38,17 +38,22 @@ def state_in_words(kind: Kind, first: Voltage, last: Voltage | None = None, othe
     return f"{kind}: {positive} pu, {negative} pu{at}"
 
 
-def in_words(scenario: Scenario) -> str:
-    """Sag and events in one line."""
+def events_of(scenario: Scenario) -> tuple[Fact, ...]:
+    """Events besides the sag, each as what there is to say of it."""
+    return tuple(map(_event, scenario.events))
+
+
+def in_words(scenario: Scenario, events: Sequence[Fact]) -> str:
+    """Sag and events (`events_of`) in one line."""
     sag = [describe_sag(scenario.sag)] if _is_something(scenario.sag) else []
-    return "; ".join([*sag, *(f"{fact.name} {fact.text}" for fact in map(_event, scenario.events))]) or NO_DISTURBANCE
+    return "; ".join([*sag, *map(_in_a_line, events)]) or NO_DISTURBANCE
 
 
-def facts_of(scenario: Scenario) -> Iterator[Fact]:
-    """What there is to know of a scenario, one thing a fact: the disturbance first, then grid and weather."""
+def facts_of(scenario: Scenario, events: Sequence[Fact]) -> Iterator[Fact]:
+    """What there is to know of a scenario, one thing a fact: sag and events (`events_of`), then grid and weather."""
     if _is_something(scenario.sag) or not scenario.events:
         yield Fact(name="turn" if _is_turn(scenario.sag) else "sag", text=describe_sag(scenario.sag))
-    yield from map(_event, scenario.events)
+    yield from events
     yield Fact(name="duration", text=_seconds(scenario.duration_s))
     yield Fact(name="point on wave", text=f"{scenario.point_on_wave_deg:.6g} °")
     yield Fact(name="grid frequency", text=f"{scenario.frequency_hz:.6g} Hz")
@@ -77,18 +82,23 @@ def describe_sag(sag: Sag) -> str:
     return f"{lost} in {where}, {left}{turned}"
 
 
-def stretches_in_words(scenario: Scenario, begins_s: Sequence[float]) -> Iterator[str]:
-    """Sag that holds from each instant of the record on (s, in order), and events that begin there; empty without."""
+def stretches_in_words(scenario: Scenario, events: Sequence[Fact], begins_s: Sequence[float]) -> Iterator[str]:
+    """Sag that holds from each instant of the record on (s, in order), and events that begin there; empty without.
+
+    ``events`` are those of `events_of`.
+    """
     sags = last_begun([span for span in sag_spans(scenario) if _is_something(span.item)], begins_s)
-    others = [event for event in scenario.events if not isinstance(event, FurtherSag)]
-    begun = sorted((t, k) for k, event in enumerate(others) if (t := _begins_s(event)) is not None)
+    others = [(k, event) for k, event in enumerate(scenario.events) if not isinstance(event, FurtherSag)]
+    begun = sorted((t, k) for k, event in others if (t := _begins_s(event)) is not None)
     for t_s, sag in zip(begins_s, sags, strict=True):
         at_s = t_s - scenario.start_s
         here = begun[bisect_left(begun, (at_s - _AN_INSTANT_S,)) : bisect_left(begun, (at_s + _AN_INSTANT_S,))]
-        facts = [_event(others[k]) for k in sorted(k for _, k in here)]
-        yield "; ".join(
-            [*([] if sag is None else [describe_sag(sag)]), *(f"{fact.name} {fact.text}" for fact in facts)]
-        )
+        facts = [events[k] for k in sorted(k for _, k in here)]
+        yield "; ".join([*([] if sag is None else [describe_sag(sag)]), *map(_in_a_line, facts)])
+
+
+def _in_a_line(fact: Fact) -> str:
+    return f"{fact.name} {fact.text}"
 
 
 def _begins_s(event: Event) -> float | None:

@@ -1,8 +1,10 @@
 """A record between the steps of the voltage: what is settled there, and what a step still spoils."""
 
+from bisect import bisect_right
+
 import numpy as np
 
-from pvlvrt_compliance.disturbance.model import Stretch
+from pvlvrt_compliance.disturbance.model import Kind, Stretch
 from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.evidence.series import Mask
 from pvlvrt_compliance.measure.durations import median_over_time
@@ -14,17 +16,21 @@ _ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 def name_of(stretch: Stretch, evidence: Evidence) -> str:
     """What a message calls a stretch: which of its kind it is, its voltage and its times."""
-    alike = [
-        part.begin_s
-        for part in evidence.disturbance.following_stretches(evidence.record_end_s)
-        if part.kind == stretch.kind and part.begin_s <= stretch.begin_s
-    ]
-    number = max(len(alike), 1)
+    alike_s = evidence.once("beginnings of a kind", lambda: _begins_by_kind(evidence)).get(stretch.kind, [])
+    number = max(bisect_right(alike_s, stretch.begin_s), 1)
     ordinal = _ORDINALS[number - 1] if number <= len(_ORDINALS) else f"{number}th"
     kind = "time of normal voltage" if stretch.kind == "normal" else stretch.kind
     positive, negative = stretch.voltage.positive_pu, stretch.voltage.negative_pu
     level = f"{positive:.2f} pu" if negative < _BALANCED_PU else f"V+ {positive:.2f} pu, V- {negative:.2f} pu"
     return f"{ordinal} {kind}, {level}, {stretch.begin_s:.2f} s to {stretch.end_s:.2f} s"
+
+
+def _begins_by_kind(evidence: Evidence) -> dict[Kind, list[float]]:
+    """When the stretches of each kind begin (s), in order of time."""
+    found: dict[Kind, list[float]] = {}
+    for part in evidence.disturbance.following_stretches(evidence.record_end_s):
+        found.setdefault(part.kind, []).append(part.begin_s)
+    return found
 
 
 def name_at(evidence: Evidence, at_s: float | None) -> str:

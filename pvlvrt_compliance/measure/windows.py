@@ -120,8 +120,8 @@ def settled_window(
     that leaves one.
     """
     from_s = begin_s + rules.during_start_s
-    usual, short = (_shorten(Span(from_s, t), frequency_hz) for t in (end_s - rules.during_end_s, end_s))
-    return usual or short
+    usual = _shorten(Span(from_s, end_s - rules.during_end_s), frequency_hz)
+    return usual or _shorten(Span(from_s, end_s), frequency_hz)
 
 
 def last_window(begin_s: float, end_s: float, frequency_hz: float, rules: WindowRules = STANDARD_RULES) -> Span | None:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.plant.lookup import count_until
 from pvlvrt_compliance.vectors import scaled
 
 
@@ -28,13 +29,14 @@ class GridTable(NamedTuple):
 
 
 class HarmonicTable(NamedTuple):
-    """Harmonics of the source; each is there from ``t_on`` to ``t_off``."""
+    """Harmonics of the source in order of ``t_on``; each is there from then to ``t_off``."""
 
     order: NDArray[np.int64]  # turns with that power of exp(j theta); negative: negative sequence (-)
     u: NDArray[np.complex128]  # space vector at angle 0 (V)
     u_zero: NDArray[np.complex128]  # phasor of a zero-sequence harmonic, peak (V)
     t_on: NDArray[np.float64]  # (s)
     t_off: NDArray[np.float64]  # (s)
+    t_over: NDArray[np.float64]  # when this one and all before it are over (s)
 
 
 class PlaybackTable(NamedTuple):
@@ -156,8 +158,8 @@ def playback_zero_sequence(t: float, table: PlaybackTable) -> float:
 def harmonic_voltage(x: Source, t: float, table: HarmonicTable) -> complex:
     """Space vector of the harmonics at an instant (V)."""
     u = 0j
-    for k in range(len(table.order)):
-        if table.t_on[k] <= t < table.t_off[k]:
+    for k in range(count_until(t, table.t_over), count_until(t, table.t_on)):
+        if t < table.t_off[k]:
             u += table.u[k] * power_of(x.turn, table.order[k])
     return u
 
@@ -166,8 +168,8 @@ def harmonic_voltage(x: Source, t: float, table: HarmonicTable) -> complex:
 def harmonic_zero_sequence(x: Source, t: float, table: HarmonicTable) -> float:
     """Zero sequence of the harmonics at an instant, phase to neutral (V)."""
     u = 0.0
-    for k in range(len(table.order)):
-        if table.t_on[k] <= t < table.t_off[k]:
+    for k in range(count_until(t, table.t_over), count_until(t, table.t_on)):
+        if t < table.t_off[k]:
             u += (table.u_zero[k] * power_of(x.turn, table.order[k])).real
     return u
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pvlvrt_compliance.kernel import kernel
+from pvlvrt_compliance.plant.lookup import count_until
 
 
 class IrradianceTable(NamedTuple):
@@ -18,9 +19,9 @@ class IrradianceTable(NamedTuple):
 @kernel
 def irradiance_at(t: float, table: IrradianceTable) -> float:
     """Irradiance at an instant, in units of 1000 W/m2."""
+    k = max(count_until(t, table.t), 1)
     G: float = table.G[len(table.G) - 1]
-    for k in range(len(table.t) - 1, 0, -1):
-        if t < table.t[k]:
-            share = (t - table.t[k - 1]) / (table.t[k] - table.t[k - 1])
-            G = table.G[k - 1] + share * (table.G[k] - table.G[k - 1])
+    if k < len(table.t):
+        share = (t - table.t[k - 1]) / (table.t[k] - table.t[k - 1])
+        G = table.G[k - 1] + share * (table.G[k] - table.G[k - 1])
     return G

@@ -55,14 +55,19 @@ def grid_table(scenario: Scenario, nominal: Nominal, T_S: float) -> GridTable:
 
 def harmonic_table(scenario: Scenario, nominal: Nominal) -> HarmonicTable | None:
     """Harmonics of a scenario, if any. In phase a one is A cos(n theta + phi), whatever its sequence."""
-    found = [event for event in scenario.events if isinstance(event, Harmonic)]
+
+    def begin_s(event: Harmonic) -> float:
+        return LONG_AGO_S if event.t_s is None else scenario.start_s + event.t_s
+
+    found = sorted((event for event in scenario.events if isinstance(event, Harmonic)), key=begin_s)
     if not found:
         return None
     peak = nominal.phase_voltage_peak_v
     phasors = [cmath.rect(peak * event.amplitude_pu, math.radians(event.phase_deg)) for event in found]
     signs = [{"positive": 1, "negative": -1, "zero": 0}[event.natural_sequence] for event in found]
-    starts = [LONG_AGO_S if event.t_s is None else scenario.start_s + event.t_s for event in found]
+    starts = [begin_s(event) for event in found]
     lengths = [math.inf if event.duration_s is None else event.duration_s for event in found]
+    ends = np.array(starts, dtype=np.float64) + np.array(lengths, dtype=np.float64)
     return HarmonicTable(
         order=np.array([event.order * (sign or 1) for event, sign in zip(found, signs, strict=True)], dtype=np.int64),
         u=_vector(
@@ -70,7 +75,8 @@ def harmonic_table(scenario: Scenario, nominal: Nominal) -> HarmonicTable | None
         ),
         u_zero=_vector(u if sign == 0 else 0j for u, sign in zip(phasors, signs, strict=True)),
         t_on=np.array(starts, dtype=np.float64),
-        t_off=np.array(starts, dtype=np.float64) + np.array(lengths, dtype=np.float64),
+        t_off=ends,
+        t_over=np.maximum.accumulate(ends),
     )
 
 

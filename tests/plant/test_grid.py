@@ -8,7 +8,12 @@ from hypothesis import strategies as st
 
 from pvlvrt_compliance.plant import grid
 from pvlvrt_compliance.plant import plant as plant_module
+from pvlvrt_compliance.scenario.events import Harmonic
 from pvlvrt_compliance.scenario.sag import Sag
+from pvlvrt_compliance.scenario.scenario import Scenario
+from pvlvrt_compliance.simulation.parameters import Parameters
+from pvlvrt_compliance.simulation.surroundings import harmonic_table
+from pvlvrt_compliance.simulation.translate import nominal_of
 
 U = math.sqrt(3) * 230
 
@@ -89,6 +94,7 @@ def test_harmonics_turn_with_the_fundamental(in_python, source, plant, t, held):
         u_zero=np.array([0j, 4 + 0j]),
         t_on=np.array([1.0, 1.0]),
         t_off=np.array([2.0, 2.0]),
+        t_over=np.array([2.0, 2.0]),
     )
     theta = cmath.phase(at.turn)
     e = in_python(plant_module.with_harmonics)(100 + 0j, at, t, harmonics)
@@ -96,3 +102,44 @@ def test_harmonics_turn_with_the_fundamental(in_python, source, plant, t, held):
     assert e == pytest.approx(100 + held * cmath.rect(10, -5 * theta))
     assert zero == pytest.approx(1.0 + held * 4 * math.cos(3 * theta))
     assert in_python(plant_module.with_harmonics)(100 + 0j, at, t, None) == 100
+
+
+SPANS = st.lists(
+    st.tuples(
+        st.one_of(st.none(), st.integers(-10, 20)), st.one_of(st.none(), st.integers(1, 12)), st.sampled_from([3, 5, 7])
+    ),
+    max_size=12,
+)
+
+
+@given(spans=SPANS, tick=st.integers(-15, 35))
+def test_whatever_holds_of_many_harmonics_is_summed(in_python, spans, tick):
+    """In any order, over each other or not, from the beginning on or to the end."""
+    events = [
+        Harmonic(
+            kind="harmonic",
+            order=order,
+            amplitude_pu=0.01 * (k + 1),
+            phase_deg=10.0 * k,
+            **({} if begin is None else {"t_s": 0.01 * begin}),
+            **({} if length is None else {"duration_s": 0.01 * length}),
+        )
+        for k, (begin, length, order) in enumerate(spans)
+    ]
+    scenario = Scenario(sag=Sag(depth=0.0), duration_s=0.2, events=tuple(events))
+    nominal = nominal_of(Parameters(), scenario)
+    t = scenario.start_s + 0.01 * tick + 0.005
+    source = grid.Source(0, 1e9, 0j, 0j, 0j, cmath.rect(1, 0.7), 1 + 0j, 0j, 0j)
+    table = harmonic_table(scenario, nominal)
+    e, zero = 0j, 0.0
+    for k, (begin, length, order) in enumerate(spans):
+        began = begin is None or begin <= tick
+        ended = length is not None and (begin is None or tick >= begin + length)  # from the beginning: long over
+        if began and not ended:
+            in_phase_a = nominal.phase_voltage_peak_v * 0.01 * (k + 1)
+            u = cmath.rect(in_phase_a, math.radians(10.0 * k))
+            turned = {3: 0j, 5: (u.conjugate()) * cmath.rect(1, -5 * 0.7), 7: u * cmath.rect(1, 7 * 0.7)}[order]
+            e += math.sqrt(1.5) * turned
+            zero += (u * cmath.rect(1, 3 * 0.7)).real if order == 3 else 0.0
+    assert in_python(plant_module.with_harmonics)(0j, source, t, table) == pytest.approx(e, abs=1e-9)
+    assert in_python(plant_module.zero_with_harmonics)(0.0, source, t, table) == pytest.approx(zero, abs=1e-9)

@@ -9,7 +9,7 @@ from pvlvrt_compliance.checks.connection.demand import Demand
 from pvlvrt_compliance.evidence.evidence import Evidence, require_finite
 from pvlvrt_compliance.evidence.no_load import has_source
 from pvlvrt_compliance.evidence.series import Mask
-from pvlvrt_compliance.evidence.stretches import settled_pu, settling_s
+from pvlvrt_compliance.evidence.stretches import after_each_step, settled_pu, settling_s
 from pvlvrt_compliance.evidence.voltages import NAMES, voltage_quantity_pu
 from pvlvrt_compliance.measure.durations import median_over_time
 from pvlvrt_compliance.profile.curves import Envelope, Side
@@ -131,6 +131,7 @@ def _limit(envelope: Envelope, side: Side, by: str, tolerance_pu: float, evidenc
     voltage_pu = voltage_quantity_pu(evidence, envelope.voltage_quantity, "no_load")
     require_finite(voltage_pu[after_start], NAMES[envelope.voltage_quantity], evidence.t_s[after_start])
     starts_s = _starts_s(envelope, side, tolerance_pu, voltage_pu, evidence)
+    unsettled = after_each_step(evidence, settling_s(evidence), evidence.disturbance.voltage_steps_s)
 
     def demand(since_s: float, stay_s: float) -> Demand:
         mark, uncertain_s = envelope.mark_at(stay_s), _uncertain_s(envelope, stay_s, evidence)
@@ -145,10 +146,7 @@ def _limit(envelope: Envelope, side: Side, by: str, tolerance_pu: float, evidenc
         here = _up_to_the_worst(envelope, side, voltage_pu, tolerance_pu, evidence.samples(begin_s, end_s))
         t_s = evidence.t_s[here] - begin_s
         beyond_pu = (envelope.voltage_at(t_s) - voltage_pu[here]) * (1 if side is Side.LOW else -1)
-        deep = beyond_pu > tolerance_pu
-        for step_s in evidence.disturbance.voltage_steps_s:
-            unsettled = evidence.samples(step_s, step_s + settling_s(evidence))
-            deep[max(unsettled.start - here.start, 0) : max(unsettled.stop - here.start, 0)] = False
+        deep = (beyond_pu > tolerance_pu) & ~unsettled[here]
         left_s = _first_excursion_s(t_s, beyond_pu, deep, envelope, tolerance_pu)
         if left_s is not None:
             left_s = _at_its_step(left_s, begin_s, envelope, side, voltage_pu, tolerance_pu, evidence)

@@ -1,6 +1,7 @@
 """The inverter stays connected through jumps of the voltage's angle, and its active power comes back."""
 
 import math
+from bisect import bisect_left, bisect_right
 from typing import NamedTuple
 
 import numpy as np
@@ -108,8 +109,10 @@ def jump_at(evidence: Evidence, at_s: float) -> SeenJump:
     cycle_s, accuracy_deg = settling_s(evidence), evidence.thresholds.angle_accuracy_deg.value
     before_s, _ = between_steps_s(evidence, at_s - 1e-6)
     _, after_s = between_steps_s(evidence, at_s)
-    others = [t for t in evidence.disturbance.angle_steps_s if t != at_s]
-    alone = all(abs(t - at_s) > 2 * cycle_s for t in others)
+    jumps_s = evidence.disturbance.angle_steps_s
+    here, after = bisect_left(jumps_s, at_s), bisect_right(jumps_s, at_s)
+    beside_s = (*jumps_s[max(here - 1, 0) : here], *jumps_s[after : after + 1])
+    alone = all(abs(t - at_s) > 2 * cycle_s for t in beside_s)
     alone = alone and evidence.disturbance.is_frequency_steady(at_s - 2 * cycle_s, at_s + 2 * cycle_s)
     if alone and at_s - before_s > 2 * cycle_s and after_s - at_s > cycle_s:
         before = evidence.t_s[max(int(np.searchsorted(evidence.t_s, at_s - 1e-9)) - 1, 0)]  # the last sample
@@ -118,7 +121,7 @@ def jump_at(evidence: Evidence, at_s: float) -> SeenJump:
         jump = _measured(at_s, last, then * np.exp(-1j * drift), accuracy_deg)
         if math.isfinite(jump.positive_deg) and math.isfinite(jump.phase_deg):
             return jump
-    asked = next(jump for jump in evidence.disturbance.jumps if jump.at_s == at_s)
+    asked = evidence.disturbance.jump_at(at_s)
     return SeenJump(at_s, asked.positive_deg, asked.phase_deg, "asked for", accuracy_deg)
 
 

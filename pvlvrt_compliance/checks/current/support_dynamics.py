@@ -48,7 +48,7 @@ class SupportDynamicsCheck(StretchCheck):
 
     def stretches(self, requirement: SupportDynamics, evidence: Evidence) -> tuple[Stretch, ...]:
         """Those that begin with a step of the voltage."""
-        steps_s = evidence.disturbance.voltage_steps_s
+        steps_s = frozenset(evidence.disturbance.voltage_steps_s)
         return tuple(part for part in super().stretches(requirement, evidence) if part.begin_s in steps_s)
 
     def judge_stretch(self, requirement: SupportDynamics, evidence: Evidence, stretch: Stretch) -> Verdict:

@@ -1,6 +1,7 @@
 """The faults of a record: each from its start to its clearing, whatever levels it has in between."""
 
-from itertools import groupby
+from bisect import bisect_left
+from itertools import groupby, islice
 
 from pvlvrt_compliance.disturbance.model import Stretch
 from pvlvrt_compliance.evidence.evidence import Evidence, NotApplicable, after_trip
@@ -26,8 +27,7 @@ def faults(evidence: Evidence) -> tuple[Stretch, ...]:
 
 def levels(fault: Stretch, evidence: Evidence) -> tuple[Stretch, ...]:
     """The stretches that a fault is made of."""
-    inside = evidence.disturbance.following_stretches(fault.end_s)
-    return tuple(part for part in inside if part.begin_s >= fault.begin_s)
+    return evidence.disturbance.following_stretches(fault.end_s, fault.begin_s)
 
 
 def window_in(fault: Stretch, evidence: Evidence) -> Span | None:
@@ -57,7 +57,8 @@ def require_clearing(fault: Stretch, evidence: Evidence) -> None:
 
 def next_fault_s(fault: Stretch, evidence: Evidence) -> float | None:
     """When the voltage departs again after a fault, or the inverter trips (s); None when neither follows."""
-    parts = [part for part in evidence.stretches_until("trip") if part.begin_s >= fault.end_s]
-    departed = next((part.begin_s for part in parts if part.kind != "normal"), None)
+    parts = evidence.stretches_until("trip")
+    after = islice(parts, bisect_left(parts, fault.end_s, key=lambda part: part.begin_s), None)
+    departed = next((part.begin_s for part in after if part.kind != "normal"), None)
     opened_s = evidence.known_opening_s
     return min((t for t in (departed, opened_s) if t is not None), default=None)

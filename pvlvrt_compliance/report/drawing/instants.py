@@ -1,5 +1,6 @@
 """What is said of instants: steps of the disturbance, what is no normal voltage, the window, the breaker."""
 
+import math
 from collections.abc import Callable, Iterator
 from typing import Literal
 
@@ -10,6 +11,9 @@ from pvlvrt_compliance.results import TestResult
 
 _NEAR_AN_END = 0.25  # of the record: words as long as they are here would leave the drawing
 _BEFORE_S, _AFTER_S = 0.02, 0.08  # what the zoom on an instant shows
+
+_MOST_LINES = 200  # as long as there are no more, each step has its own
+_APART = 1 / 500  # of what is shown: about a pixel and a half
 
 Anchor = Literal["left", "center", "right"]
 Place = Callable[[float, Anchor], Anchor]
@@ -38,8 +42,18 @@ def marks_of(result: TestResult, span: Point, opened_s: float | None) -> tuple[M
         share = (at_s - start_s) / length_s if length_s > 0 else 0.0
         return "left" if share < _NEAR_AN_END else "right" if share > 1 - _NEAR_AN_END else usual
 
-    lines = (Mark(step.at_s, GREY, "dash") for step in steps_of(result))
-    return (*lines, *_words(result, place), *_opening(result, opened_s, place))
+    return (*lines_at_steps(result, span), *_words(result, place), *_opening(result, opened_s, place))
+
+
+def lines_at_steps(result: TestResult, span: Point) -> Iterator[Mark]:
+    """A line at each step that is shown; of a great many, none that no eye could tell from the one before it."""
+    shown_s = [step.at_s for step in steps_of(result) if span[0] <= step.at_s <= span[1]]
+    apart_s = (span[1] - span[0]) * _APART if len(shown_s) > _MOST_LINES else 0.0
+    drawn_s = -math.inf
+    for at_s in shown_s:
+        if at_s - drawn_s >= apart_s:
+            drawn_s = at_s
+            yield Mark(at_s, GREY, "dash")
 
 
 def zooms_of(result: TestResult, span: Point) -> tuple[Zoom, ...]:

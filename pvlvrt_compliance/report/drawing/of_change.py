@@ -7,7 +7,7 @@ from pvlvrt_compliance.evidence.evidence import Evidence
 from pvlvrt_compliance.report.drawing.clipping import Frame, lines_within
 from pvlvrt_compliance.report.drawing.colours import BLACK, GREY
 from pvlvrt_compliance.report.drawing.curves import Group, Shown, groups_of, known
-from pvlvrt_compliance.report.drawing.instants import steps_of
+from pvlvrt_compliance.report.drawing.instants import lines_at_steps
 from pvlvrt_compliance.report.drawing.limits import limits_of
 from pvlvrt_compliance.report.drawing.model import Axis, Drawing, Line, Mark, Panel, Point, Spot, Text
 from pvlvrt_compliance.report.drawing.of_test import TIME, cycle_of, drawn, height_of, reach_of
@@ -187,9 +187,7 @@ def _spots(one: _Shown, window: Point) -> Iterator[Spot]:
 
 def _marks(result: TestResult, verdicts: tuple[Verdict, Verdict], window: Point) -> Iterator[Mark]:
     """Steps of the disturbance without words, and the worst instants with them."""
-    for step in steps_of(result):
-        if window[0] <= step.at_s <= window[1]:
-            yield Mark(step.at_s, GREY, "dash")
+    yield from lines_at_steps(result, window)
     for row, (name, verdict, colour) in enumerate(
         zip(("new", "old"), reversed(verdicts), (BLACK, GREY), strict=True), start=1
     ):
