@@ -24,6 +24,7 @@ import typer
 from pvlvrt_compliance.cache import cache_root
 from pvlvrt_compliance.controllers.process import command as process
 from pvlvrt_compliance.controllers.process.family import adopt_orphans, descendants
+from pvlvrt_compliance.errors import stop_behind
 from tests.hostile.case import EVALUATE, Case
 from tests.hostile.cases import case_of
 from tests.hostile.folder import clear, put
@@ -148,9 +149,9 @@ def _status_of(case: Case) -> int:
         main()
     except SystemExit as end:
         return end.code if isinstance(end.code, int) else 0 if end.code is None else -1
-    except process.STOPS as end:
-        return process.status_of(end)
-    except BaseException:
+    except BaseException as end:
+        if stop := stop_behind(end):
+            return process.status_of(stop)
         traceback.print_exc()
     return -1
 
