@@ -12,7 +12,7 @@ from pvlvrt_compliance.results import ProfileSummary, ReportDetails, Results, co
 from pvlvrt_compliance.study.baseline.applying import held_against
 from pvlvrt_compliance.study.baseline.catalogue import Catalogue
 from pvlvrt_compliance.study.ordering import in_order
-from pvlvrt_compliance.study.provenance import provenance
+from pvlvrt_compliance.study.provenance import bundled, provenance
 from pvlvrt_compliance.study.reuse.telling import reuse_of
 from pvlvrt_compliance.study.selection import Assignment, kinds_judged
 from pvlvrt_compliance.study.work import Tested, Work
@@ -50,6 +50,11 @@ class Account:
     created: datetime
     details: ReportDetails | None
     files: Mapping[str, Any]
+
+    def load(self) -> None:
+        """Load what the results will name; afterwards it costs nothing."""
+        if self.controller is None:
+            bundled()
 
     def results(self, tests: Sequence[Tested], *, interrupted: bool = False) -> Results:
         """The results of finished tests, in the order of the profiles.

@@ -56,7 +56,7 @@ def provenance(
         "command": command if isinstance(command, str) else " ".join(map(shell_word, command)),
         "profile": ", ".join(profile.id for profile in profiles),
         "profile_digest": ", ".join(profile.digest for profile in profiles),
-        **(controller or _bundled()),
+        **(controller or bundled()),
         **({"files": files} if files else {}),
         "versions": versions(),
         "parameters": parameters.model_dump(mode="json"),
@@ -85,8 +85,11 @@ def versions() -> dict[str, str]:
     }
 
 
-def _bundled() -> dict[str, str]:
-    """Name and digest of the bundled controller: of the files that it is made from, its plant and loop included."""
+def bundled() -> dict[str, str]:
+    """Name and digest of the bundled controller: of the files that it is made from, its plant and loop included.
+
+    The first time all of these are loaded, a quarter of a second.
+    """
     from pvlvrt_compliance.kernel import sources_of
     from pvlvrt_compliance.simulation.loop import run
 

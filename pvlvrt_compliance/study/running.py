@@ -218,7 +218,13 @@ class _Run:
             executor, note = choose_executor(work, units_of(work.job.tests, work.job.first), controller, tell)
             if note:
                 tell(note)
-        with closing(session(work, progress=progress, controller=controller, executor=executor)) as stream:
+
+        def begins(name: str, done: int, total: int) -> None:
+            self._account.load()  # where processes are at work, this one has the time for it
+            if progress:
+                progress(name, done, total)
+
+        with closing(session(work, progress=begins, controller=controller, executor=executor)) as stream:
             for tested in stream:
                 if tested.made is not None:
                     self._made[tested.result.key] = tested.made

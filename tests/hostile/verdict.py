@@ -22,7 +22,7 @@ MOST_MEMORY = 1 << 30
 _PREFIX = "pvlvrt-check: "
 _COLOUR = re.compile(r"\x1b\[[\d;]*m")
 _COLOURED = {"FORCE_COLOR", "TTY_COMPATIBLE"}  # variables that ask for colours, which are control characters
-_FURTHER = re.compile(r"  \S")
+_FURTHER = re.compile(r"  +\S")
 _OURS = re.compile(r"::(error|warning|notice|group|endgroup)( (title|file)=|::)")
 _BROKEN = re.compile(r"Traceback \(most recent|\b\w*Warning: |Segmentation fault|^Exception ignored", re.MULTILINE)
 

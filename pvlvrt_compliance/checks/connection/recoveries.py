@@ -20,7 +20,7 @@ def judged_recovery(kind: str, requirement: RideThrough, evidence: Evidence) -> 
     fraction, time_s = requirement.recovery_fraction, requirement.recovery_time_s
     if fraction is None or time_s is None or evidence.disturbance.leaves_voltage_alone:
         return None
-    found = []
+    found, rests_on = [], [number for _, number in marks_in(requirement)]
     for from_s, until_s, name in _returns(evidence):
         try:
             found.append(
@@ -32,7 +32,7 @@ def judged_recovery(kind: str, requirement: RideThrough, evidence: Evidence) -> 
                     until_s=until_s,
                     fraction=fraction,
                     time_s=time_s,
-                    rests_on=[number for _, number in marks_in(requirement)],
+                    rests_on=rests_on,
                     since=name,
                 )
             )
