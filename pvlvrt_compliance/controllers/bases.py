@@ -81,7 +81,7 @@ _KNOWN_AS: Mapping[str, tuple[str, tuple[str, ...]]] = {
 
 _SHORT = {
     **dict.fromkeys(("vn", "un"), "voltage"),
-    **dict.fromkeys(("vlln", "ulln"), "line_voltage"),
+    **dict.fromkeys(("vlln", "ulln", "vbll", "ubll"), "line_voltage"),
     **dict.fromkeys(("vdcn", "udcn"), "dc_voltage"),
     **dict.fromkeys(("sn", "sb", "pn"), "apparent_power"),
     **dict.fromkeys(("fn", "f0"), "frequency"),
@@ -94,6 +94,9 @@ _UNITS_OF = {
     "angular_frequency": "frequency",
 }
 _WHERE = dict.fromkeys(("frequency", "angular_frequency"), "unless the profile says otherwise")
+_WITH_UNIT = re.compile(r"(?P<name>.+?)(?P<unit>_(?i:kv|v|ka|a|mva|kva|va|mw|kw|w|hz)|kV|V|kA|MVA|kVA|VA|MW|kW|Hz)")
+"""A name that ends in its unit: ``Sbase_MVA``, ``VLLbase_kv``, ``fnomHz``."""
+
 _IN_NAMES = {"mva": "MVA", "mw": "MW", "kva": "kVA", "kw": "kW", "m": "MVA"}
 
 
@@ -149,11 +152,11 @@ def _named(
     where: str, name: str, value: Value | None, unit: str, plant: Mapping[str, Sequence[Measure]]
 ) -> Iterator[Base]:
     """The base that a name means, if it means one."""
-    what, stem = _meaning(name)
+    what, in_name = _meaning(name)
     if what is None or isinstance(value, (bool, str)) or value is None or value <= 0:
         return
     units = _units_of(what)
-    said = _unit_in(unit, units) or _IN_NAMES.get(stem, "")
+    said = _unit_in(unit, units) or (in_name if in_name in units else "")
     if spelled(unit) == "pu" or (unit and not said):
         return
     said = said or ("rad/s" if what == "angular_frequency" else _si(units))
@@ -168,16 +171,26 @@ def _units_of(what: str) -> Mapping[str, float]:
 
 
 def _meaning(name: str) -> tuple[str | None, str]:
-    """What a name is a base of, and the name without the word that says so."""
+    """What a name is a base of, and the unit that it names."""
+    what, unit = _meant(name)
+    if what is None and (match := _WITH_UNIT.fullmatch(name)):
+        what, unit = _meant(match["name"])[0], spelled(match["unit"].lstrip("_"))
+        if what is not None and unit not in _units_of(what):
+            return None, ""
+    return what, unit
+
+
+def _meant(name: str) -> tuple[str | None, str]:
+    """The same of a name that no unit stands behind."""
     key = re.sub(r"[^a-z0-9]", "", name.casefold())
     if key in _SHORT:
-        return _SHORT[key], key[:-1]
+        return _SHORT[key], ""
     for pattern in (rf"(?P<stem>.+?)({_BASE})", rf"({_BASE})(?P<stem>.+)"):
         if match := re.fullmatch(pattern, key):
             stem = match["stem"]
             what = next((what for what, (stems, _) in _KNOWN_AS.items() if re.fullmatch(stems, stem)), None)
             if what is not None:
-                return what, stem
+                return what, _IN_NAMES.get(stem, "")
     return None, ""
 
 

@@ -46,6 +46,11 @@ def found(*parameters, inputs=(), bases=None):
         ("fbase", 60.0, "Hz", 50),
         ("wbase", 120 * math.pi, "rad/s", 100 * math.pi),
         ("omega_nom", 120 * math.pi, "", 100 * math.pi),
+        ("Vb_LL_kV", 0.6, "", math.sqrt(3) * 0.230),
+        ("Sb_MVA", 0.2, "", 0.5),
+        ("Sbase_kva", 200, "", 500),
+        ("fnomHz", 60.0, "", 50),
+        ("VLLbase_V", 600.0, "V", math.sqrt(3) * 230),
     ],
 )
 def test_a_base_that_differs(name, value, unit, plant):
@@ -73,6 +78,9 @@ def test_a_base_that_differs(name, value, unit, plant):
         ("Vbase", 0.0, "V"),
         ("Tnom", 3.0, "s"),
         ("Sbase", 3.0, "degC"),
+        ("Vbase_a", 600.0, ""),
+        ("Sbase_V", 600.0, ""),
+        ("Vb_kV", 0.6, ""),
     ],
 )
 def test_what_is_no_base(name, value, unit):
