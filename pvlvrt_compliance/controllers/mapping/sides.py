@@ -122,8 +122,10 @@ def _outputs(ports: Sequence[RawPort], mapping: MappingFile, nominal: Nominal) -
 def _guess_output(name: str, width: int, hints: Hints) -> Guess:
     """The command that an output means; of one that means none, the channel that it is recorded under: its own name."""
     guess = guess_output(name, width, hints)
-    if guess.names or guess.note or width != 1:
+    if guess.names or guess.note:
         return guess
+    if width != 1:
+        return Guess(note=f'not recorded: it is {width} numbers; a mapping file names them, {{record = ["...", ...]}}')
     if name.isascii() and name.isidentifier():
         return guess if name in {*TAKEN, *COMMANDS} else Guess((name,))
     return Guess(note=f'{NO_CHANNEL}; a mapping file gives one, {{record = "..."}}')

@@ -230,3 +230,14 @@ def test_an_output_whose_name_is_no_channel_is_told(name):
     assert told.startswith(f"not recorded, as a channel cannot be called so: outputs {name} and {name}.; ")
     named = MappingFile.model_validate({"outputs": {name: {"record": "p_out_w"}}})
     assert map_outputs([port(name)], named, NOMINAL).recorded == ("p_out_w",)
+
+
+def test_an_output_of_several_numbers_is_told():
+    """It is not recorded, and every run says why; with a name for each from a file it is."""
+    wide = port("p_steps", width=2)
+    (output,) = ports = map_outputs([wide], None, NOMINAL).ports
+    assert output.mapped_to is None
+    assert list(told_of((), ports)) == [f"output p_steps: {output.note}"]
+    assert output.note.startswith("not recorded: it is 2 numbers; a mapping file names them, {record = [")
+    named = MappingFile.model_validate({"outputs": {"p_steps": {"record": ["p_now", "p_next"]}}})
+    assert map_outputs([wide], named, NOMINAL).recorded == ("p_now", "p_next")
