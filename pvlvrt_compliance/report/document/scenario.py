@@ -1,6 +1,6 @@
 """The scenario of a test in words, and the voltages that the record has against those that were asked for."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from pvlvrt_compliance.disturbance.model import Disturbance
@@ -17,6 +17,9 @@ from pvlvrt_compliance.report.language import Texts
 from pvlvrt_compliance.results import TestResult, WindowMeasurements
 
 _DIGITS = 3  # of a voltage in pu; the difference is that of the two as they are shown
+
+_MOST_TOLD = 25
+"""Events, or stretches that were found, that are told one by one; `results.json` has them all (chosen: half a page)."""
 
 _ASKED = {
     *("sag", "duration_s", "point_on_wave_deg", "frequency_hz", "irradiance_w_m2", "cell_temperature_c"),
@@ -106,15 +109,16 @@ def _pu(value: float | None, sign: bool = False) -> str:
 def _found(grid: Disturbance, texts: Texts) -> Iterator[str]:
     """What a record was found to hold; times count from its start."""
     yield texts("scenario.found.disturbance", start_s=number(grid.start_s, "s"), end_s=number(grid.end_s, "s"))
-    for stretch in grid.stretches:
-        if stretch.kind != "normal":
-            yield texts(
-                f"scenario.found.{stretch.kind}",
-                begin_s=number(stretch.begin_s, "s"),
-                end_s=number(stretch.end_s, "s"),
-                positive_pu=number(stretch.voltage.positive_pu, "pu"),
-                negative_pu=number(stretch.voltage.negative_pu, "pu"),
-            )
+    abnormal = [stretch for stretch in grid.stretches if stretch.kind != "normal"]
+    for stretch in abnormal[:_MOST_TOLD]:
+        yield texts(
+            f"scenario.found.{stretch.kind}",
+            begin_s=number(stretch.begin_s, "s"),
+            end_s=number(stretch.end_s, "s"),
+            positive_pu=number(stretch.voltage.positive_pu, "pu"),
+            negative_pu=number(stretch.voltage.negative_pu, "pu"),
+        )
+    yield from _not_told(abnormal, texts)
 
 
 def _happens(scenario: Mapping[str, Any], texts: Texts) -> Iterator[str]:
@@ -127,10 +131,17 @@ def _happens(scenario: Mapping[str, Any], texts: Texts) -> Iterator[str]:
         yield texts("scenario.events_alone", duration_s=number(scenario["duration_s"], "s"))
     else:
         yield texts("scenario.nothing")
-    for event in events:
+    for event in events[:_MOST_TOLD]:
         yield from event_words(event, texts)
+    yield from _not_told(events, texts)
     if any(map(has_instant, events)):
         yield texts("scenario.times")
+
+
+def _not_told(items: Sequence[object], texts: Texts) -> Iterator[str]:
+    """That there are more than anybody reads one by one."""
+    if (count := len(items) - _MOST_TOLD) > 0:
+        yield texts("scenario.further_events", count=count)
 
 
 def _angle(scenario: Mapping[str, Any]) -> float:

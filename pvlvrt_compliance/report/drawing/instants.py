@@ -12,8 +12,8 @@ from pvlvrt_compliance.results import TestResult
 _NEAR_AN_END = 0.25  # of the record: words as long as they are here would leave the drawing
 _BEFORE_S, _AFTER_S = 0.02, 0.08  # what the zoom on an instant shows
 
-_MOST_LINES = 200  # as long as there are no more, each step has its own
-_APART = 1 / 500  # of what is shown: about a pixel and a half
+_MOST_LINES = 100  # as long as there are no more, each step has its own
+_APART = 1 / 100  # of what is shown: about seven pixels, between which the curves are seen
 
 Anchor = Literal["left", "center", "right"]
 Place = Callable[[float, Anchor], Anchor]
@@ -46,7 +46,7 @@ def marks_of(result: TestResult, span: Point, opened_s: float | None) -> tuple[M
 
 
 def lines_at_steps(result: TestResult, span: Point) -> Iterator[Mark]:
-    """A line at each step that is shown; of a great many, none that no eye could tell from the one before it."""
+    """A line at each step that is shown; of a great many, those that leave the curves to be seen between them."""
     shown_s = [step.at_s for step in steps_of(result) if span[0] <= step.at_s <= span[1]]
     apart_s = (span[1] - span[0]) * _APART if len(shown_s) > _MOST_LINES else 0.0
     drawn_s = -math.inf

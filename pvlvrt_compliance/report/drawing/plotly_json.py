@@ -1,12 +1,12 @@
 """A panel of a drawing as the plain dictionary that plotly.js draws, once `figures.js` has unpacked its numbers."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from pvlvrt_compliance.report.drawing.canvas import UNITS_A_PX, canvas_of, spots_in
 from pvlvrt_compliance.report.drawing.colours import BLACK, GREY, GRID, PAPER
 from pvlvrt_compliance.report.drawing.frame import BOTTOM_PX, LEFT_PX, RIGHT_PX, ROW_PX, Frame, frame_of
-from pvlvrt_compliance.report.drawing.model import Area, Bars, Drawing, Line, Mark, Panel, Shade
+from pvlvrt_compliance.report.drawing.model import Area, Bars, Dash, Drawing, Line, Mark, Panel, Shade
 from pvlvrt_compliance.report.drawing.names import curve_name
 from pvlvrt_compliance.report.drawing.packing import short
 from pvlvrt_compliance.report.drawing.plotly_traces import (
@@ -21,6 +21,7 @@ from pvlvrt_compliance.report.language import Texts
 
 Figure = dict[str, Any]
 
+_MOST_SHAPES = 50  # of lines of one look
 _HALO = 0.8  # of the ground behind words that stand on curves
 
 FONT = "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', Arial, sans-serif"
@@ -52,7 +53,7 @@ def render(panel: Panel, drawing: Drawing, texts: Texts) -> Figure:
         "xaxis": _x_axis(panel, texts),
         "yaxis": _y_axis(panel, texts),
         "legend": {**_LEGEND, "y": short(-BOTTOM_PX / (frame.floor - frame.top))},
-        "shapes": [*map(_shade, shades), *(_vertical(mark) for mark in marks if mark.dash)],
+        "shapes": [*map(_shade, shades), *_verticals(marks)],
         "annotations": [
             *(_words(mark, frame, texts) for mark in marks if mark.words),
             *_pointed(panel, drawing, frame, texts),
@@ -140,6 +141,21 @@ def _shade(shade: Shade) -> Figure:
         "line": {"width": 0},
         "fillcolor": translucent(shade.colour, shade.opacity),
     }
+
+
+def _verticals(marks: Sequence[Mark]) -> Iterator[Figure]:
+    """Lines at instants: a shape each, or of very many of one look one, as each takes a browser milliseconds."""
+    looks: dict[tuple[str, Dash | None], list[Mark]] = {}
+    for mark in marks:
+        if mark.dash:
+            looks.setdefault((mark.colour, mark.dash), []).append(mark)
+    for (colour, dash), lines in looks.items():
+        if len(lines) <= _MOST_SHAPES:
+            yield from map(_vertical, lines)
+        else:
+            path = "".join(f"M{short(mark.at_s)},0V1" for mark in lines)
+            line = {"color": colour, "width": 1, "dash": dash}
+            yield {"type": "path", "xref": "x", "yref": "paper", "path": path, "line": line}
 
 
 def _vertical(mark: Mark) -> Figure:

@@ -154,6 +154,28 @@ def test_a_voltage_profile_is_told_step_by_step():
     )
 
 
+@pytest.mark.parametrize(
+    ("number", "last"),
+    [
+        (25, "At 2.400 s the angle of all phases jumps ahead by 5°."),
+        (26, "1 further event follows; results.json has it."),
+        (5000, "4975 further events follow; results.json has them all."),
+    ],
+)
+def test_as_many_events_are_told_as_anybody_reads(number, last):
+    """Those that come first; the others are counted. So are the sags that a record was found to hold."""
+    events = [{"kind": "phase_jump", "t_s": k / 10, "angle_deg": 5} for k in range(number)]
+    told = happens({"events": events, "duration_s": 501.0})
+    assert len(told) == 1 + min(number, 26)
+    assert told[-1] == last
+    sags = [{"kind": "sag", "t_s": k / 10, "duration_s": 0.05, "sag": {"depth": 0.9}} for k in range(min(number, 50))]
+    asked = disturbance_asked(Scenario.model_validate({"sag": {"depth": 0}, "duration_s": 6, "events": sags}), NORMAL)
+    found = asked.model_copy(update={"origin": "found"})
+    words = scenario_words(result(disturbance=found), Texts()).happens
+    assert len(words) == 1 + min(number, 26)
+    assert ("follow" in words[-1]) == (number > 25)
+
+
 def test_conditions_are_told():
     """Frequency, grid, transformer, weather, set-point and the length of the record."""
     scenario = {"frequency_hz": 60, "scr": 3, "xr": 5, "vector_group": "Dyn11", "reactive_power_pu": -0.3, "after_s": 2}

@@ -4,8 +4,11 @@ import math
 import numpy as np
 import pytest
 
+from pvlvrt_compliance.disturbance.model import Step
 from pvlvrt_compliance.report.drawing import plotly_json
-from pvlvrt_compliance.report.drawing.model import Area, Axis, Bars, Line, OnGrid, Panel, Run, Strip, values
+from pvlvrt_compliance.report.drawing.colours import BLACK, GREY
+from pvlvrt_compliance.report.drawing.instants import lines_at_steps
+from pvlvrt_compliance.report.drawing.model import Area, Axis, Bars, Line, Mark, OnGrid, Panel, Run, Strip, values
 from pvlvrt_compliance.report.drawing.packing import packed
 from pvlvrt_compliance.report.drawing.plotly_traces import area_trace, line_trace, single
 from pvlvrt_compliance.report.language import Texts
@@ -129,3 +132,30 @@ def test_a_limit_is_not_packed():
 def test_what_is_beyond_32_bits_is_a_gap():
     """A value that the browser's numbers do not hold is left out, without a warning."""
     assert np.isnan(single(np.array([1e300, np.inf, -1e39, np.nan]))).all()
+
+
+@pytest.mark.parametrize(("number", "kinds"), [(50, ["line"] * 50), (51, ["path"])])
+def test_very_many_lines_of_one_look_are_one_shape(drawing, number, kinds):
+    """It goes through each instant, from the bottom of the panel to the top; a line of another look stays its own."""
+    marks = (*(Mark(0.01 * k, GREY, "dash") for k in range(number)), Mark(0.123, BLACK, "solid"))
+    panel = next(panel for panel in drawing.panels if panel.over == "time")
+    shapes = plotly_json.render(panel, drawing._replace(marks=marks, shades=()), TEXTS)["layout"]["shapes"]
+    assert [shape["type"] for shape in shapes] == [*kinds, "line"]
+    if number > 50:
+        assert (shapes[0]["xref"], shapes[0]["yref"]) == ("x", "paper")
+        parts = shapes[0]["path"].removeprefix("M").split("M")
+        assert [float(part.removesuffix(",0V1")) for part in parts] == pytest.approx([mark.at_s for mark in marks[:-1]])
+    assert shapes[-1]["x0"] == pytest.approx(0.123)
+
+
+@pytest.mark.parametrize(("number", "lines"), [(100, 100), (101, 51), (5000, 100)])
+def test_of_very_many_steps_curves_are_seen_between_the_lines(make_test, number, lines):
+    """Lines are a hundredth of what is shown apart then; steps that are not shown do not count."""
+    span = (0.0, 10.0)
+    instants_s = [*(0.05 + 10 * k / number for k in range(number)), *range(11, 300)]
+    result = make_test()
+    grid = result.disturbance.model_copy(update={"steps": tuple(Step(at_s=t, moved=("angle",)) for t in instants_s)})
+    found = list(lines_at_steps(result.model_copy(update={"disturbance": grid}), span))
+    assert lines - 2 <= len(found) <= lines  # a step may just miss the hundredth
+    assert found[0].at_s == 0.05
+    assert {(mark.colour, mark.dash) for mark in found} == {(GREY, "dash")}
