@@ -2,9 +2,10 @@
 
 import math
 from bisect import bisect_left, bisect_right
+from collections.abc import Mapping
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
@@ -133,6 +134,13 @@ class Disturbance(_Frozen):
     irradiance_w_m2: tuple[FiniteFloat, FiniteFloat] | None = Field(default=None, description="first and last")
     in_words: Text = ""
     facts: tuple[Fact, ...] = ()
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """The same with other fields; what has been made of the old ones is made anew."""
+        copied = super().model_copy(update=update, deep=deep)
+        for name in [name for name in vars(copied) if name not in type(self).model_fields]:
+            del copied.__dict__[name]
+        return copied
 
     @property
     def duration_s(self) -> float:

@@ -257,3 +257,15 @@ def test_a_profile_of_the_voltage_is_told_level_by_level():
 def test_a_scenario_in_a_few_words(scenario, says):
     """Tables and titles never say that there is no sag where something else happens."""
     assert scenario.describe() == says
+
+
+def test_a_copy_with_other_steps_has_its_own_stretches():
+    """Nothing that was made of the old ones is in it."""
+    grid = disturbance_asked(scenario_of(0.9), NORMAL)
+    assert grid.voltage_steps_s == pytest.approx((0.3, 0.9))
+    assert len(grid.following_stretches(2.0)) == 2
+    shorter = grid.model_copy(update={"steps": grid.steps[:1], "stretches": grid.stretches[:2]})
+    assert shorter.voltage_steps_s == pytest.approx((0.3,))
+    assert len(shorter.following_stretches(2.0)) == 1
+    assert shorter.stretch_at(5.0) == grid.stretches[1]
+    assert grid.voltage_steps_s == pytest.approx((0.3, 0.9))
