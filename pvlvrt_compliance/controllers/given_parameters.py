@@ -76,6 +76,14 @@ def beyond_their_ranges(given: Mapping[str, Value], known: Iterable[ParameterInf
     }
 
 
+def beyond_words(found: Mapping[str, str]) -> str:
+    """What is told of these where they were allowed."""
+    if not found:
+        return "every parameter is in the range that it states: none had to be allowed out of it"
+    words = ", ".join(f"{name} = {told}" for name, told in found.items())
+    return f"out of the range that it states, as was allowed: {words}"
+
+
 def code_of(value: Value) -> Value:
     """The whole number that a single character of type char is; any other value as it is."""
     return ord(value) if isinstance(value, str) and len(value) == 1 and value.isascii() else value

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from pvlvrt_compliance.controllers.description import Description, Value
 from pvlvrt_compliance.controllers.endings import end_in_words, why_not_described, with_said
-from pvlvrt_compliance.controllers.given_parameters import beyond_their_ranges
+from pvlvrt_compliance.controllers.given_parameters import beyond_their_ranges, beyond_words
 from pvlvrt_compliance.controllers.limits import Limits, limits_of_opening, limits_of_run
 from pvlvrt_compliance.controllers.mapping.commands import missing_commands, missing_words
 from pvlvrt_compliance.controllers.mapping.file import load_mapping
@@ -81,7 +81,7 @@ class ForeignSimulator:
             self.notes.append(f"tied to nothing and left as the controller has them: inputs {', '.join(loose)}")
         self.note(told_of(self.description.inputs, self.description.outputs))
         if allow_out_of_range:
-            self.notes.append(_beyond_words(self.out_of_range()))
+            self.notes.append(beyond_words(self.out_of_range()))
 
     def __reduce__(self) -> tuple[Any, ...]:
         """For another process, where it is not described anew."""
@@ -241,13 +241,6 @@ class ForeignSimulator:
         if ended.answer is not None and ended.answer.description is not None:
             return ended.answer.description
         raise UsageError(f"--controller {self.spec}: {why_not_described(ended, limits)}")
-
-
-def _beyond_words(found: Mapping[str, str]) -> str:
-    if not found:
-        return "every parameter is in the range that it states: none had to be allowed out of it"
-    words = ", ".join(f"{name} = {told}" for name, told in found.items())
-    return f"out of the range that it states, as was allowed: {words}"
 
 
 def _mapping_provenance(mapping: str) -> dict[str, str]:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from pvlvrt_compliance.cli.controllers.shared import Assignments, Mapped, OutOfRange, Spec
 from pvlvrt_compliance.cli.telling import say, say_json
 
 if TYPE_CHECKING:
@@ -15,18 +16,10 @@ _NOTHING = "(nothing)"
 
 
 def inspect(
-    spec: Annotated[str, typer.Argument(metavar="SPEC", help="As for --controller.", show_default=False)],
-    mapping: Annotated[
-        str | None,
-        typer.Option(metavar="FILE", help="Ties its ports to the plant. Default: NAME.mapping.toml beside it."),
-    ] = None,
-    assignments: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="NAME=VALUE", help="A parameter, as of the main command; repeatable."),
-    ] = None,
-    allow_out_of_range: Annotated[
-        bool, typer.Option("--allow-out-of-range", metavar="", help="Let them be out of the range that it states.")
-    ] = False,
+    spec: Spec,
+    mapping: Mapped = None,
+    assignments: Assignments = None,
+    allow_out_of_range: OutOfRange = False,
     json: Annotated[bool, typer.Option("--json", metavar="", help="For programs.")] = False,
 ) -> None:
     """Show a controller's ports, what each is tied to, its parameters and its sample time, and why it cannot be run.

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from pvlvrt_compliance.cli.controllers.shared import Assignments, Mapped, OutOfRange, Spec
 from pvlvrt_compliance.cli.telling import hand_over, say, say_json, tell
 from pvlvrt_compliance.cli.writing import write_over
 from pvlvrt_compliance.errors import unwritable
@@ -24,7 +25,7 @@ is no number and nothing is expected.
 
 
 def replay(
-    spec: Annotated[str, typer.Argument(metavar="SPEC", help="As for --controller.", show_default=False)],
+    spec: Spec,
     inputs: Annotated[str, typer.Option("--inputs", metavar="FILE", help="What it is given: CSV.", show_default=False)],
     expect: Annotated[
         str | None,
@@ -50,14 +51,9 @@ def replay(
         list[str] | None,
         typer.Option(metavar="NAME=NUMBER", help="An input that has no column: what it is held at; repeatable."),
     ] = None,
-    mapping: Annotated[
-        str | None,
-        typer.Option(metavar="FILE", help="Ties its ports to the plant. Default: NAME.mapping.toml beside it."),
-    ] = None,
-    assignments: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="NAME=VALUE", help="A parameter, as of the main command; repeatable."),
-    ] = None,
+    mapping: Mapped = None,
+    assignments: Assignments = None,
+    allow_out_of_range: OutOfRange = False,
     json: Annotated[bool, typer.Option("--json", metavar="", help="The comparison for programs.")] = False,
 ) -> int:
     """Feed recorded signals to a controller and compare what it gives."""
@@ -69,7 +65,7 @@ def replay(
 
     refuse_unknown(output or (), "--output")
     given, others = own_parameters(assignments or ())
-    asked = Asked(spec, inputs, expect, mapping, tolerance or (), hold or ())
+    asked = Asked(spec, inputs, expect, mapping, tolerance or (), hold or (), allow_out_of_range)
     found = replayed(asked, given, parameters_from(others))
     made = Replayed(found.title, found.outputs, found.units, found.agreements)
     files = files_of(output or (), made)

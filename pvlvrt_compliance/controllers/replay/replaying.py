@@ -9,6 +9,7 @@ import numpy as np
 
 from pvlvrt_compliance.controllers.description import Description, Value
 from pvlvrt_compliance.controllers.endings import advice, end_in_words, with_said
+from pvlvrt_compliance.controllers.given_parameters import beyond_their_ranges, beyond_words
 from pvlvrt_compliance.controllers.limits import limits_of_opening, limits_of_run
 from pvlvrt_compliance.controllers.mapping.file import load_mapping
 from pvlvrt_compliance.controllers.process.answer import Due
@@ -39,6 +40,7 @@ class Asked(NamedTuple):
     mapping: str | None = None  # file
     tolerances: Sequence[str] = ()
     held: Sequence[str] = ()
+    allow_out_of_range: bool = False  # of the ranges that the controller states for its parameters
 
 
 class Replay(NamedTuple):
@@ -107,7 +109,8 @@ def replay(asked: Asked, given: Mapping[str, Value], parameters: Parameters) -> 
     agreements, said = ((), ()) if expected is None else expected.compared(record, outputs)
     files = (vectors,) if expected is None or asked.expect == asked.inputs else (vectors, expected.vectors)
     others = [each.others([*known.inputs, *outputs]) for each in files]
-    notes = (known.note, *what.notes, *others, *said, *_not_finite(record), *done.notes)
+    beyond = beyond_words(beyond_their_ranges(given, description.parameters)) if asked.allow_out_of_range else ""
+    notes = (known.note, beyond, *what.notes, *others, *said, *_not_finite(record), *done.notes)
     return Replay(
         f"{one_line(description.name)} ({description.kind}), {asked.spec}",
         record,
@@ -120,7 +123,9 @@ def replay(asked: Asked, given: Mapping[str, Value], parameters: Parameters) -> 
 def _described(asked: Asked, given: Mapping[str, Value], parameters: Parameters) -> Description:
     """What the controller says of itself; its ports need not be tied."""
     limits = limits_of_opening(parameters.simulation)
-    ended = do_apart(DescribeJob(asked.spec, given, asked.mapping, bare=True), limits)
+    ended = do_apart(
+        DescribeJob(asked.spec, given, asked.mapping, allow_out_of_range=asked.allow_out_of_range, bare=True), limits
+    )
     if ended.answer is not None and ended.answer.description is not None:
         return ended.answer.description
     why = f"{ended.reason}{advice(ended)}" if ended.answer is None else str(ended.answer.head.error)
@@ -146,7 +151,13 @@ def _run(
     outputs: int,
 ) -> _Done:
     limits = limits_of_run(parameters.simulation, feed.calls * feed.sample_time_s)
-    job = ReplayJob(asked.spec, given, asked.mapping, feed=feed, nominal=nominal, digest=description.digest)
+    job = ReplayJob(
+        *(asked.spec, given, asked.mapping),
+        allow_out_of_range=asked.allow_out_of_range,
+        feed=feed,
+        nominal=nominal,
+        digest=description.digest,
+    )
     ended = do_apart(job, limits, Due(feed.calls, outputs))
     if ended.answer is None:
         raise UnfinishedError(f"{asked.spec}: {with_said(end_in_words(ended), ended, limits)}")

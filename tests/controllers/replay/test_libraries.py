@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pvlvrt_compliance.controllers.replay.replaying import Asked, replay
-from pvlvrt_compliance.errors import UnfinishedError
+from pvlvrt_compliance.errors import UnfinishedError, UsageError
 from pvlvrt_compliance.simulation.parameters import Parameters
 
 pytestmark = pytest.mark.compiler
@@ -85,3 +85,14 @@ def test_what_a_library_prints_is_no_output(compiled, written):
     """Neither JSON nor anything else."""
     assert fed(compiled, written, how=6).status == 0
     assert np.isnan(fed(compiled, written, how=3).outputs["m_b"]).sum() == 102
+
+
+def test_a_parameter_out_of_its_range_is_refused_or_allowed_and_told(compiled, written):
+    """As in a run: the vectors of a maker may be those of another setting than its model allows."""
+    u = {f"m[{k}]": np.sin(np.arange(50) + k) for k in range(3)}
+    asked = Asked(str(compiled("parameterised.c")), str(written("in.csv", u)), str(written("out.csv", u)))
+    with pytest.raises(UsageError, match="gain: -3.5 is out of range; 0 to 2 is allowed"):
+        replay(asked, {"gain": -3.5}, Parameters())
+    found = replay(asked._replace(allow_out_of_range=True), {"gain": -3.5}, Parameters())
+    assert (found.status, len(found.agreements)) == (0, 3)
+    assert "out of the range that it states, as was allowed: gain = -3.5 (0 to 2)" in found.notes
