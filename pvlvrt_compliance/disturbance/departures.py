@@ -1,5 +1,7 @@
 """The instant of a step, to the sample: a voltage of one cycle shows that there is one, and that up to a cycle late."""
 
+import math
+
 import numpy as np
 
 from pvlvrt_compliance.waveforms.container import Samples, Segment, Waveforms
@@ -47,7 +49,8 @@ def _differences(segment: Segment, kind: str, begin_s: float, end_s: float, cycl
     """How far the phases are from a cycle before, at each sample that of the phase with the most (V), shape (n,)."""
     begin, end = segment.index_at(begin_s), segment.index_at(end_s) + 1
     t_s = segment.dt_s * np.arange(begin, end)
-    grid_s = segment.dt_s * np.arange(end)
-    phases = (phase[:end] for phase in segment.three_phase(kind))
-    found: Samples = np.abs([x[begin:] - np.interp(t_s - cycle_s, grid_s, x) for x in phases]).max(axis=0)
+    first = max(begin - math.ceil(cycle_s / segment.dt_s) - 1, 0)  # a cycle before, and a sample
+    grid_s = segment.dt_s * np.arange(first, end)
+    phases = (phase[first:end] for phase in segment.three_phase(kind))
+    found: Samples = np.abs([x[begin - first :] - np.interp(t_s - cycle_s, grid_s, x) for x in phases]).max(axis=0)
     return found

@@ -1,7 +1,8 @@
 """The disturbance that a record shows: of a measured one, for which nobody says what the grid was asked to do."""
 
+from bisect import bisect_left
 from collections.abc import Callable, Iterator
-from itertools import pairwise
+from itertools import count, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -59,12 +60,24 @@ class _Seen(NamedTuple):
 
     def median(self, x: Samples, begin_s: float, end_s: float) -> float:
         """Median of what is known of a series between two instants; where nothing is, its last value before the end."""
-        known = np.isfinite(x)
-        inside = known & (self.t_s >= begin_s) & (self.t_s < end_s)
-        if inside.any():
-            return float(np.median(x[inside]))
-        before = np.flatnonzero(known & (self.t_s < end_s))
-        return float(x[before[-1] if len(before) else known.argmax()])
+        begin, end = (int(k) for k in np.searchsorted(self.t_s, (begin_s, end_s)))
+        inside = x[begin:end]
+        known = inside[np.isfinite(inside)]
+        if len(known):
+            return float(np.median(known))
+        last = _last_known(x, end)
+        return float(x[np.isfinite(x).argmax() if last is None else last])
+
+
+def _last_known(x: Samples, end: int) -> int | None:
+    """Index of the last number before another index, looked for from there on backwards; None where there is none."""
+    for begin in (max(end - (64 << k), 0) for k in count()):
+        known = np.flatnonzero(np.isfinite(x[begin:end]))
+        if len(known):
+            return begin + int(known[-1])
+        if begin == 0:
+            return None
+    raise AssertionError
 
 
 @SILENT
@@ -96,7 +109,8 @@ def disturbance_found(waveforms: Waveforms, nominal: Nominal, thresholds: Thresh
             "the record holds no disturbance: no step of the voltage, of its angle or of the frequency"
         )
     bounds = [waveforms.t0_s, *(step.at_s for step in found), waveforms.end_s]
-    stretches = tuple(_stretch(seen, begin_s, end_s, thresholds) for begin_s, end_s in pairwise(bounds))
+    usual_hz = seen.usual_hz
+    stretches = tuple(_stretch(seen, begin_s, end_s, usual_hz, thresholds) for begin_s, end_s in pairwise(bounds))
     voltage_steps_s = [step.at_s for step in found if "voltage" in step.moved]
     clear_s = _cleared_s(stretches, voltage_steps_s) or found[-1].at_s
     facts = tuple(_facts(stretches, found, jumps))
@@ -191,9 +205,13 @@ def _steps(
     candidates = _apart(_moves_s(seen, thresholds), 2 * thresholds.settled_cycles * seen.cycle_s)
     for event in events:
         for at_s in (event.start_s, event.end_s):
-            near = at_s is None or any(abs(at_s - t) < thresholds.settled_cycles * seen.cycle_s for t in candidates)
-            if at_s is not None and not near:
-                candidates.append(at_s)
+            if at_s is None:
+                continue
+            k = bisect_left(candidates, at_s)
+            if all(
+                abs(at_s - t) >= thresholds.settled_cycles * seen.cycle_s for t in candidates[max(k - 1, 0) : k + 1]
+            ):
+                candidates.insert(k, at_s)
     candidates = sorted({departed_s(at_s) for at_s in candidates})
     steps, jumps = [], []
     for before_s, at_s, after_s in zip(
@@ -250,9 +268,8 @@ def _frequency_moves_s(seen: _Seen, steps_s: list[float], thresholds: Thresholds
     """When the frequency leaves where it was, steps of the voltage left out."""
     known = np.isfinite(seen.frequency_hz)
     for at_s in steps_s:
-        known &= (seen.t_s < at_s - seen.cycle_s) | (
-            seen.t_s > at_s + thresholds.frequency_settled_cycles * seen.cycle_s
-        )
+        end_s = at_s + thresholds.frequency_settled_cycles * seen.cycle_s
+        known[np.searchsorted(seen.t_s, at_s - seen.cycle_s) : np.searchsorted(seen.t_s, end_s, "right")] = False
     if not known.any():
         return []
     off = np.where(known, np.abs(seen.frequency_hz - seen.frequency_hz[known.argmax()]), np.nan)
@@ -261,13 +278,13 @@ def _frequency_moves_s(seen: _Seen, steps_s: list[float], thresholds: Thresholds
     ]
 
 
-def _stretch(seen: _Seen, begin_s: float, end_s: float, thresholds: Thresholds) -> Stretch:
+def _stretch(seen: _Seen, begin_s: float, end_s: float, usual_hz: float, thresholds: Thresholds) -> Stretch:
     settling_s = thresholds.settled_cycles * seen.cycle_s
     positive, negative, zero = (seen.median(x, begin_s + settling_s, end_s) for x in seen.sequences_pu)
     voltage = Voltage(positive_pu=positive, negative_pu=negative, zero_pu=zero)
     kind = kind_of(thresholds.normal, voltage)
     frequency_hz = seen.median(seen.frequency_hz, begin_s + thresholds.frequency_settled_cycles * seen.cycle_s, end_s)
-    is_other = abs(frequency_hz - seen.usual_hz) > thresholds.frequency_hz
+    is_other = abs(frequency_hz - usual_hz) > thresholds.frequency_hz
     return Stretch(
         begin_s=begin_s,
         end_s=end_s,

@@ -151,6 +151,14 @@ class Disturbance(_Frozen):
         """Instants at which any of these moves (s), in order of time."""
         return tuple(step.at_s for step in self.steps if not set(moved).isdisjoint(step.moved))
 
+    def has_step_at(self, at_s: float) -> bool:
+        """Whether anything steps at an instant (s)."""
+        return at_s in self._steps_s
+
+    @cached_property
+    def _steps_s(self) -> frozenset[float]:
+        return frozenset(step.at_s for step in self.steps)
+
     @cached_property
     def voltage_steps_s(self) -> tuple[float, ...]:
         """Instants at which the voltage jumps, or begins or ends to move (s)."""

@@ -42,7 +42,7 @@ def name_at(evidence: Evidence, at_s: float | None) -> str:
 
 def surely_over_s(evidence: Evidence, end_s: float) -> float:
     """Up to when a stretch is surely not yet what follows (s): a step that was found in a record is a cycle late."""
-    is_found = evidence.disturbance.origin == "found" and any(step.at_s == end_s for step in evidence.disturbance.steps)
+    is_found = evidence.disturbance.origin == "found" and evidence.disturbance.has_step_at(end_s)
     return end_s - 1 / evidence.frequency_hz if is_found else end_s
 
 

@@ -269,3 +269,28 @@ def test_a_copy_with_other_steps_has_its_own_stretches():
     assert len(shorter.following_stretches(2.0)) == 1
     assert shorter.stretch_at(5.0) == grid.stretches[1]
     assert grid.voltage_steps_s == pytest.approx((0.3, 0.9))
+
+
+def test_a_record_is_searched_in_time_with_its_length(monkeypatch):
+    """Twice as many sags in a record of twice the length: twice as many numbers are looked at, not four times."""
+    looked_at = []
+
+    def counted(name, place):
+        right = getattr(np, name)
+
+        def count(*arguments, **named):
+            looked_at.append(np.size(arguments[place]))
+            return right(*arguments, **named)
+
+        monkeypatch.setattr(np, name, count)
+
+    for name, place in (("isfinite", 0), ("median", 0), ("interp", 1), ("flatnonzero", 0)):
+        counted(name, place)
+    found = []
+    for number in (30, 60):
+        sags = [{"kind": "sag", "t_s": 0.2 * k, "duration_s": 0.1, "sag": {"depth": 0.5}} for k in range(number)]
+        record = record_of(scenario_of(0.0, *sags, duration_s=0.2 * number))
+        looked_at.clear()
+        assert len(disturbance_found(record, Nominal(), Thresholds(NORMAL)).voltage_steps_s) == 2 * number
+        found.append(sum(looked_at))
+    assert found[1] < 2.5 * found[0]
