@@ -61,3 +61,21 @@ def test_what_cannot_be_told_is_as_it_was_seen():
     coarse = Segment(0.0, 4 * DT_S, {name: x[: round(0.28 / (4 * DT_S))] for name, x in coarse.channels.items()})
     seen_s = STEP_S + 0.7 * CYCLE_S
     assert departure_s(Waveforms((coarse, fine)), "u", seen_s, CYCLE_S, PEAK_V) == seen_s
+
+
+@pytest.mark.parametrize("turned_deg", [0, 40, 90])
+@pytest.mark.parametrize("lasts_s", [0.03, 0.04, 0.05, 0.06, 0.1])
+def test_a_short_sag_ends_when_it_does(lasts_s, turned_deg):
+    """Its own beginning, which a one-cycle voltage shows until 20 ms later, makes its end no harder to tell."""
+    segment = voltages(turned=np.radians(turned_deg))
+    back = segment.index_at(STEP_S + lasts_s)
+    channels = {name: np.concatenate([x[:back], 2 * x[back:]]) for name, x in segment.channels.items()}
+    found = departed_s(Segment(0.0, DT_S, channels), STEP_S + lasts_s + 0.7 * CYCLE_S)
+    assert found == pytest.approx(STEP_S + lasts_s, abs=2 * DT_S)
+
+
+def test_a_step_that_is_still_seen_is_not_taken_for_the_next():
+    """Where the search would begin within a cycle of it, the next is as it was seen."""
+    segment = voltages()
+    seen_s = STEP_S + 1.5 * CYCLE_S
+    assert departed_s(segment, seen_s) == seen_s
