@@ -91,7 +91,7 @@ def test_a_parameter_out_of_its_range_is_refused_or_allowed_and_told(compiled, w
     """As in a run: the vectors of a maker may be those of another setting than its model allows."""
     u = {f"m[{k}]": np.sin(np.arange(50) + k) for k in range(3)}
     asked = Asked(str(compiled("parameterised.c")), str(written("in.csv", u)), str(written("out.csv", u)))
-    with pytest.raises(UsageError, match="gain: -3.5 is out of range; 0 to 2 is allowed"):
+    with pytest.raises(UsageError, match=r"gain: -3\.5 is out of range; 0 to 2 is allowed"):
         replay(asked, {"gain": -3.5}, Parameters())
     found = replay(asked._replace(allow_out_of_range=True), {"gain": -3.5}, Parameters())
     assert (found.status, len(found.agreements)) == (0, 3)
